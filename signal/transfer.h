@@ -1,0 +1,46 @@
+// The byte seam: what crossed the wire, with direction, kind and time, so that a whole dialogue can
+// be recorded and replayed through the same decoding.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "signal/result.h"
+#include "signal/timestamp.h"
+
+namespace fude {
+
+enum class Direction : std::uint8_t { from_device, to_device };
+
+enum class TransferKind : std::uint8_t {
+  evdev_frame,  // events up to and including one SYN_REPORT (or SYN_DROPPED): see EvdevEvent
+  plugged,      // payload empty; the device appeared
+  unplugged,    // payload empty; the device went away
+};
+
+struct Transfer {
+  Timestamp time{};
+  StampedBy stamped_by = StampedBy::kernel;
+  Direction direction = Direction::from_device;
+  TransferKind kind = TransferKind::evdev_frame;
+  std::vector<std::byte> payload;
+  bool operator==(const Transfer&) const = default;
+};
+
+// One input event without its time: the frame's SYN_REPORT carries it. In a payload each event is
+// eight bytes, little-endian: type u16, code u16, value i32.
+struct EvdevEvent {
+  std::uint16_t type = 0;
+  std::uint16_t code = 0;
+  std::int32_t value = 0;
+  bool operator==(const EvdevEvent&) const = default;
+};
+
+std::vector<std::byte> pack_events(std::span<const EvdevEvent> events);
+
+// Errors: malformed when the length is no multiple of eight.
+Result<std::vector<EvdevEvent>> unpack_events(std::span<const std::byte> payload);
+
+}  // namespace fude
