@@ -1,0 +1,110 @@
+#include "capture/session_words.h"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace fude {
+namespace {
+
+template <class T>
+struct Words;
+
+template <>
+struct Words<StampedBy> {
+  static constexpr std::array<std::pair<StampedBy, std::string_view>, 3> table{
+      {{StampedBy::kernel, "kernel"}, {StampedBy::arrival, "arrival"}, {StampedBy::recording, "recording"}}};
+};
+template <>
+struct Words<Direction> {
+  static constexpr std::array<std::pair<Direction, std::string_view>, 2> table{
+      {{Direction::from_device, "from"}, {Direction::to_device, "to"}}};
+};
+template <>
+struct Words<TransferKind> {
+  static constexpr std::array<std::pair<TransferKind, std::string_view>, 3> table{
+      {{TransferKind::evdev_frame, "evdev"},
+       {TransferKind::plugged, "plugged"},
+       {TransferKind::unplugged, "unplugged"}}};
+};
+template <>
+struct Words<PenTool> {
+  static constexpr std::array<std::pair<PenTool, std::string_view>, 6> table{
+      {{PenTool::none, "none"},
+       {PenTool::pen, "pen"},
+       {PenTool::rubber, "rubber"},
+       {PenTool::brush, "brush"},
+       {PenTool::pencil, "pencil"},
+       {PenTool::airbrush, "airbrush"}}};
+};
+template <>
+struct Words<DeviceKind> {
+  static constexpr std::array<std::pair<DeviceKind, std::string_view>, 3> table{
+      {{DeviceKind::pen_tablet, "tablet"}, {DeviceKind::mouse, "mouse"}, {DeviceKind::other, "other"}}};
+};
+
+template <class T>
+std::string_view find_word(T value) {
+  for (const auto& [v, word] : Words<T>::table)
+    if (v == value) return word;
+  return "none";
+}
+
+}  // namespace
+
+std::string_view word_for(StampedBy by) { return find_word(by); }
+std::string_view word_for(Direction direction) { return find_word(direction); }
+std::string_view word_for(TransferKind kind) { return find_word(kind); }
+std::string_view word_for(PenTool tool) { return find_word(tool); }
+std::string_view word_for(DeviceKind kind) { return find_word(kind); }
+
+template <class T>
+std::optional<T> value_for(std::string_view word) {
+  for (const auto& [value, w] : Words<T>::table)
+    if (w == word) return value;
+  return std::nullopt;
+}
+template std::optional<StampedBy> value_for<StampedBy>(std::string_view);
+template std::optional<Direction> value_for<Direction>(std::string_view);
+template std::optional<TransferKind> value_for<TransferKind>(std::string_view);
+template std::optional<PenTool> value_for<PenTool>(std::string_view);
+template std::optional<DeviceKind> value_for<DeviceKind>(std::string_view);
+
+ActionWords words_for(const Action& action) {
+  struct Visitor {
+    ActionWords operator()(const LoadBrush& load) const {
+      return {"load", nlohmann::json{{"wetness", load.wetness}, {"strength", load.strength}}.dump()};
+    }
+    ActionWords operator()(const ReshapeBrush&) const { return {"reshape", "{}"}; }
+    ActionWords operator()(const DrySheet&) const { return {"dry", "{}"}; }
+    ActionWords operator()(const Undo&) const { return {"undo", "{}"}; }
+    ActionWords operator()(const Redo&) const { return {"redo", "{}"}; }
+  };
+  return std::visit(Visitor{}, action.what);
+}
+
+Result<Action> action_from(Timestamp time, const std::string& verb, const std::string& arguments) {
+  if (verb == "reshape") return Action{time, ReshapeBrush{}};
+  if (verb == "dry") return Action{time, DrySheet{}};
+  if (verb == "undo") return Action{time, Undo{}};
+  if (verb == "redo") return Action{time, Redo{}};
+  const Error bad{Fault::malformed, "the session holds an action '" + verb + "' that cannot be read"};
+  if (verb != "load") return tl::unexpected(bad);
+  const auto json = nlohmann::json::parse(arguments, nullptr, false);
+  if (!json.is_object() || !json.contains("wetness") || !json["wetness"].is_number() ||
+      !json.contains("strength") || !json["strength"].is_array() ||
+      json["strength"].size() != concentrations_per_group)
+    return tl::unexpected(bad);
+  LoadBrush load;
+  load.wetness = json["wetness"].get<float>();
+  if (!(load.wetness >= 0 && load.wetness <= 1)) return tl::unexpected(bad);
+  for (std::size_t i = 0; i < concentrations_per_group; ++i) {
+    if (!json["strength"][i].is_number()) return tl::unexpected(bad);
+    load.strength[i] = json["strength"][i].get<float>();
+    if (!(load.strength[i] >= 0 && load.strength[i] <= 100)) return tl::unexpected(bad);
+  }
+  return Action{time, load};
+}
+
+}  // namespace fude

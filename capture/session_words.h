@@ -1,0 +1,36 @@
+// The words a session file uses for enumerations, and the JSON of actions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "signal/action.h"
+#include "signal/device.h"
+#include "signal/pen_sample.h"
+#include "signal/result.h"
+#include "signal/transfer.h"
+
+namespace fude {
+
+// The word for a value; stable for as long as the format is.
+std::string_view word_for(StampedBy by);
+std::string_view word_for(Direction direction);
+std::string_view word_for(TransferKind kind);
+std::string_view word_for(PenTool tool);
+std::string_view word_for(DeviceKind kind);
+
+// The value for a word; nothing for a word that the format does not have.
+template <class T>
+std::optional<T> value_for(std::string_view word);
+
+struct ActionWords {
+  std::string verb;
+  std::string arguments;  // a JSON object
+};
+ActionWords words_for(const Action& action);
+
+// Errors: malformed, naming the verb.
+Result<Action> action_from(Timestamp time, const std::string& verb, const std::string& arguments);
+
+}  // namespace fude

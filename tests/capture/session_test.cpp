@@ -1,0 +1,175 @@
+#include "capture/session.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "capture/database.h"
+#include "capture/session_writer.h"
+
+namespace fude {
+namespace {
+
+class SessionFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("fude-session-" + std::to_string(getpid()) + "-" +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path() const { return folder_ / "a.fude"; }
+
+  std::filesystem::path folder_;
+};
+
+DeviceDescription tablet() {
+  DeviceDescription d;
+  d.id = "056a:0304:7";
+  d.name = "A tablet";
+  d.kind = DeviceKind::pen_tablet;
+  d.transport = "evdev";
+  d.vendor = 0x056a;
+  d.product = 0x0304;
+  d.serial = "7";
+  d.keys = {320, 330};
+  d.axes = {{0, 0, 59552, 4, 0, 200, 0}, {24, 0, 1023, 0, 0, 0, 0}};
+  d.width = Millimetres(297.76);
+  return d;
+}
+
+PenSample pen(std::int64_t ns) {
+  PenSample p;
+  p.time.host = Timestamp(Duration(ns));
+  p.time.sequence = 12;
+  p.tool = PenTool::rubber;
+  p.tool_serial = 0xfedcba9876543210;
+  p.in_proximity = true;
+  p.x_counts = 0.1 + 0.2;
+  p.pressure = Fraction(1.0 / 3.0);
+  p.tilt_x = Radians(-0.7);
+  p.buttons = 2;
+  return p;
+}
+
+void write_all(SessionWriter& out) {
+  const DeviceNumber device = out.add_device(tablet()).value();
+  Transfer t{Timestamp(Duration(5)), StampedBy::kernel, Direction::from_device, TransferKind::evdev_frame,
+             pack_events(std::vector<EvdevEvent>{{3, 0, 9}, {0, 0, 0}})};
+  ASSERT_TRUE(out.add_transfer(device, t));
+  const InputOrder a = out.add_pen(device, pen(5)).value();
+  ASSERT_TRUE(out.applied(a, 3));
+  ASSERT_TRUE(out.add_action({Timestamp(Duration(6)), LoadBrush{0.5F, {1, 0, 0.25F, 2}}}));
+  ASSERT_TRUE(out.set("brush", "round-goat"));
+  ASSERT_TRUE(out.add_receipt({device, 10, 9, 1}));
+}
+
+TEST_F(SessionFile, EverythingComesBack) {
+  SessionWriter out = SessionWriter::create(path()).value();
+  write_all(out);
+  ASSERT_TRUE(out.close());
+  EXPECT_FALSE(std::filesystem::exists(path().string() + "-wal"));
+
+  const Session in = read_session(path()).value();
+  EXPECT_TRUE(in.complete);
+  ASSERT_EQ(in.devices.size(), 1U);
+  EXPECT_EQ(in.devices[0].description, tablet());
+  ASSERT_EQ(in.transfers.size(), 1U);
+  EXPECT_EQ(unpack_events(in.transfers[0].transfer.payload).value()[0], (EvdevEvent{3, 0, 9}));
+  ASSERT_EQ(in.pens.size(), 1U);
+  EXPECT_EQ(in.pens[0].sample, pen(5));
+  EXPECT_EQ(in.pens[0].applied, 3);
+  ASSERT_EQ(in.actions.size(), 1U);
+  EXPECT_GT(in.actions[0].order, in.pens[0].order);
+  EXPECT_EQ(std::get<LoadBrush>(in.actions[0].action.what), (LoadBrush{0.5F, {1, 0, 0.25F, 2}}));
+  EXPECT_EQ(in.settings.at("brush"), "round-goat");
+  ASSERT_EQ(in.receipts.size(), 1U);
+  EXPECT_EQ(in.receipts[0].dropped, 1);
+}
+
+TEST_F(SessionFile, NothingFlushedIsLostWhenTheProgramIsKilled) {
+  const pid_t child = fork();
+  if (child == 0) {
+    SessionWriter out = SessionWriter::create(path()).value();
+    const DeviceNumber device = out.add_device(tablet()).value();
+    for (int i = 0; i < 100; ++i) (void)out.add_pen(device, pen(i));
+    (void)out.flush();
+    for (int i = 100; i < 200; ++i) (void)out.add_pen(device, pen(i));
+    _exit(0);  // no destructor, no close
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  const Session in = read_session(path()).value();
+  EXPECT_FALSE(in.complete);
+  EXPECT_EQ(in.pens.size(), 100U);
+}
+
+TEST_F(SessionFile, AnExistingFileIsNeverOverwritten) {
+  std::ofstream(path()) << "mine";
+  const auto out = SessionWriter::create(path());
+  ASSERT_FALSE(out.has_value());
+  EXPECT_EQ(out.error().fault, Fault::usage);
+}
+
+TEST_F(SessionFile, ASecondProgramIsToldWhoIsBusy) {
+  SessionWriter out = SessionWriter::create(path()).value();
+  write_all(out);
+  ASSERT_TRUE(out.flush());
+  const auto in = read_session(path());
+  ASSERT_FALSE(in.has_value());
+  EXPECT_EQ(in.error().fault, Fault::busy);
+}
+
+TEST_F(SessionFile, GarbageAndCutFilesAreRefusedWithOneLine) {
+  std::ofstream(path()) << std::string(5000, 'x');
+  EXPECT_EQ(read_session(path()).error().fault, Fault::malformed);
+  EXPECT_EQ(read_session(folder_ / "none.fude").error().fault, Fault::not_found);
+  EXPECT_EQ(read_session(folder_).error().fault, Fault::malformed);
+
+  std::filesystem::remove(path());
+  SessionWriter out = SessionWriter::create(path()).value();
+  write_all(out);
+  ASSERT_TRUE(out.close());
+  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
+  const auto cut = read_session(path());
+  ASSERT_FALSE(cut.has_value());
+  EXPECT_EQ(cut.error().message.find('\n'), std::string::npos);
+}
+
+TEST_F(SessionFile, TablesOfAStrangerAreNotRun) {
+  {
+    SessionWriter out = SessionWriter::create(path()).value();
+    ASSERT_TRUE(out.close());
+  }
+  Database db = Database::open(path(), OpenMode::append).value();
+  ASSERT_TRUE(db.run("CREATE TRIGGER t AFTER INSERT ON meta BEGIN DELETE FROM device; END"));
+  EXPECT_EQ(read_session(path()).error().fault, Fault::malformed);
+}
+
+TEST_F(SessionFile, AnotherFormatIsNamed) {
+  {
+    SessionWriter out = SessionWriter::create(path()).value();
+    ASSERT_TRUE(out.close());
+  }
+  Database db = Database::open(path(), OpenMode::append).value();
+  ASSERT_TRUE(db.run("PRAGMA user_version=9"));
+  const auto in = read_session(path());
+  ASSERT_FALSE(in.has_value());
+  EXPECT_EQ(in.error().fault, Fault::unsupported);
+  EXPECT_NE(in.error().message.find("format 9"), std::string::npos);
+}
+
+TEST_F(SessionFile, AReadOnlyFileOpens) {
+  SessionWriter out = SessionWriter::create(path()).value();
+  write_all(out);
+  ASSERT_TRUE(out.close());
+  std::filesystem::permissions(path(), std::filesystem::perms::owner_read);
+  EXPECT_TRUE(read_session(path()).has_value());
+}
+
+}  // namespace
+}  // namespace fude
