@@ -46,4 +46,7 @@ struct DeviceDescription {
   bool operator==(const DeviceDescription&) const = default;
 };
 
+// The identity: "056a:0304:SERIAL", vendor and product in four hexadecimal digits each.
+std::string device_id(const DeviceDescription& device);
+
 }  // namespace fude
