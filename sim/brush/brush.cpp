@@ -1,0 +1,126 @@
+#include "sim/brush/brush.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/brush/footprint.h"
+
+namespace fude {
+namespace {
+
+constexpr double out_of_reach_mm = 1e4;  // height at which nothing touches
+constexpr double gap_s = 0.25;           // a longer silence is a new stroke
+constexpr double jump_mm = 60;           // in one frame: no hand moves like that
+constexpr int most_steps = 8;
+
+bool finite(const Pose<Paper, Handle>& pose) {
+  return pose.rotation.coeffs().allFinite() && pose.translation.allFinite() &&
+         pose.translation.cwiseAbs().maxCoeff() < 1e5 && std::abs(pose.rotation.squaredNorm() - 1) < 1e-3;
+}
+
+// Straight line, and the short way round (normalised linear interpolation: no angle is needed, and
+// between two frames it cannot be told from an even turn).
+Pose<Paper, Handle> between(const Pose<Paper, Handle>& a, const Pose<Paper, Handle>& b, double t) {
+  if (t == 1) return b;
+  Pose<Paper, Handle> pose;
+  const double sign = a.rotation.dot(b.rotation) < 0 ? -1 : 1;
+  pose.rotation.coeffs() = (1 - t) * a.rotation.coeffs() + sign * t * b.rotation.coeffs();
+  pose.rotation.normalize();
+  pose.translation = (1 - t) * a.translation + t * b.translation;
+  return pose;
+}
+
+void take_worse(SolveReport& sum, const SolveReport& step) {
+  sum.iterations = std::max(sum.iterations, step.iterations);
+  sum.converged = sum.converged && step.converged;
+  sum.kkt_residual = std::max(sum.kkt_residual, step.kkt_residual);
+  sum.violation_mm = std::max(sum.violation_mm, step.violation_mm);
+  sum.energy_mn_mm = step.energy_mn_mm;
+}
+
+}  // namespace
+
+Brush::Brush(const BrushSpec& spec, std::uint64_t seed) : tuft_(make_tuft(spec)), texture_(spec, seed) {
+  state_.tuft = rest_state(tuft_);
+  state_.loading = dry_loading(tuft_);
+}
+
+// Springs back in free air, in one step however long it was away.
+void Brush::away(double dt_s) {
+  Pose<Paper, Handle> pose = state_.tuft.paper_from_handle;
+  pose.translation.z() = out_of_reach_mm;
+  advance(tuft_, state_.tuft, pose, dt_s, true);
+  state_.footprint = false;
+}
+
+BrushFrame Brush::move(const BrushInput& input) {
+  BrushFrame frame;
+  const double elapsed_s = state_.timed ? std::max(0.0, seconds(input.time.host - state_.last)) : 0;
+  if (!state_.timed || input.time.host > state_.last) state_.last = input.time.host;
+  const bool first = !state_.timed;
+  state_.timed = true;
+  even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, 10.0));
+  if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) {
+    away(elapsed_s);
+    return frame;
+  }
+
+  Pose<Paper, Handle> target = input.paper_from_handle;
+  target.rotation.normalize();
+  target = reachable_pose(tuft_, target);
+  const Pose<Paper, Handle> start = state_.tuft.paper_from_handle;
+  const bool jumped = first || input.after_gap || elapsed_s > gap_s || !state_.tuft.placed ||
+                      !state_.footprint || (target.translation - start.translation).norm() > jump_mm;
+  const TuftSurface before = jumped ? TuftSurface{} : surface_of(tuft_, state_.tuft);
+  const int steps =
+      jumped ? 1
+             : std::clamp(static_cast<int>(std::ceil(elapsed_s / tuft_.spec.longest_step_s - 1e-6)), 1,
+                          most_steps);
+  std::vector<TimedSurface> after;
+  for (int k = 1; k <= steps; ++k) {
+    const Pose<Paper, Handle> pose = jumped ? target : between(start, target, static_cast<double>(k) / steps);
+    const SolveReport report = advance(tuft_, state_.tuft, pose, elapsed_s / steps, jumped);
+    take_worse(frame.solve, report);
+    after.push_back({surface_of(tuft_, state_.tuft), elapsed_s / steps});
+  }
+  frame.steps = steps;
+  state_.footprint = true;
+
+  std::vector<InkLoad> loads = offered(state_.loading);
+  std::optional<FootprintMap> map = sweep(before, after, tuft_.spec.cell_mm, texture_, loads);
+  if (map) frame.deposit = Deposit{std::move(*map), std::move(loads)};
+  return frame;
+}
+
+void Brush::take(const Exchange& exchange) { book(state_.loading, exchange); }
+
+void Brush::load(float wetness, const Concentrations& strength) {
+  fill(state_.loading, static_cast<double>(wetness), strength);
+}
+
+void Brush::set_endless(bool endless) { state_.loading.endless = endless; }
+
+void Brush::reshape() {
+  state_.tuft = rest_state(tuft_);
+  state_.footprint = false;
+}
+
+TuftShape Brush::shape() const {
+  const Skeleton skeleton = pose_skeleton(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
+  const Layout layout{tuft_.segments};
+  TuftShape shape;
+  for (int k = 0; k <= tuft_.segments; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const bool stretches = k > 0 && k < tuft_.segments;
+    const double rest = (1 - tuft_.spec.lateral_share) * tuft_.radius_mm[i];
+    const double a = rest + (stretches ? state_.tuft.x[layout.stretch(k, 0)] : 0);
+    const double b = rest + (stretches ? state_.tuft.x[layout.stretch(k, 1)] : 0);
+    shape.spine.push_back(skeleton.node[i]);
+    shape.lateral_a.push_back(skeleton.node[i] + a * skeleton.lateral[i]);
+    shape.lateral_b.push_back(skeleton.node[i] - b * skeleton.lateral[i]);
+  }
+  shape.sections = surface_of(tuft_, state_.tuft);
+  return shape;
+}
+
+}  // namespace fude

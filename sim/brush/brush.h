@@ -1,0 +1,86 @@
+// A brush: poses of the handle in, marks on the paper out (Chu chapter 2).
+//
+// A thin shell around pure steps: tuft_step.h moves the tuft, footprint.h sees where it touched,
+// loading.h keeps its ink. Paper frame, millimetres; time from input.time.host. One thread at a time.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "signal/brush_input.h"
+#include "signal/ink_event.h"
+#include "signal/result.h"
+#include "sim/brush/brush_spec.h"
+#include "sim/brush/hair_texture.h"
+#include "sim/brush/loading.h"
+#include "sim/brush/tuft_state.h"
+#include "sim/brush/tuft_step.h"
+#include "sim/brush/tuft_surface.h"
+
+namespace fude {
+
+// All that a brush remembers; copying it is a snapshot.
+struct BrushState {
+  TuftState tuft;
+  Loading loading;
+  bool footprint = false;  // the last pose may be swept from
+  bool timed = false;      // there is a last time
+  Timestamp last{};
+};
+
+// The same state as bytes (little-endian, IEEE 754), and back; exact. Fails (malformed) on bytes that
+// are no brush state.
+std::vector<std::byte> bytes_of(const BrushState& state);
+Result<BrushState> brush_state_of(std::span<const std::byte> bytes);
+
+// What one call of move did. A long frame is solved in several steps: iterations, residual and
+// violation are those of the worst step, energy that of the last.
+struct BrushFrame {
+  int steps = 0;
+  SolveReport solve;
+  std::optional<Deposit> deposit;  // none where nothing touches
+};
+
+// For display and tests: nodes of the spine, root to tip; lateral nodes a and b of each; sections.
+struct TuftShape {
+  std::vector<Eigen::Vector3d> spine;
+  std::vector<Eigen::Vector3d> lateral_a;
+  std::vector<Eigen::Vector3d> lateral_b;
+  TuftSurface sections;
+};
+
+class Brush {
+ public:
+  explicit Brush(const BrushSpec& spec, std::uint64_t seed);
+
+  // Follows the handle. Origin none, or a pose that is not finite: the brush is away; it springs back
+  // and marks nothing. Time that stands still or runs backwards counts as no time.
+  BrushFrame move(const BrushInput& input);
+
+  // What the paper took, net of what it gave back; the rig calls it a fixed simulated time later.
+  void take(const Exchange& exchange);
+
+  // Dips: every patch to `wetness` of its capacity, with ink of this strength.
+  void load(float wetness, const Concentrations& strength);
+  void set_endless(bool endless);  // the tuft stays as loaded
+
+  // Straightens the tuft, as on the rim of the ink stone; keeps its ink.
+  void reshape();
+
+  const BrushState& state() const { return state_; }
+  void restore(const BrushState& state) { state_ = state; }
+  TuftShape shape() const;
+
+ private:
+  void away(double dt_s);
+
+  Tuft tuft_;
+  HairTexture texture_;
+  BrushState state_;
+};
+
+}  // namespace fude

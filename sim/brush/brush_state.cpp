@@ -1,0 +1,141 @@
+// The bytes of a brush state. One walk over its fields serves writing and reading.
+#include <bit>
+#include <cmath>
+#include <type_traits>
+
+#include "sim/brush/brush.h"
+
+namespace fude {
+namespace {
+
+constexpr std::uint64_t signature = 0x3130687375726266ULL;  // "fbrush01"
+
+class Writer {
+ public:
+  void operator()(const double& value) { put(std::bit_cast<std::uint64_t>(value)); }
+  void operator()(const bool& value) { bytes.push_back(std::byte{value}); }
+  void operator()(const std::int64_t& value) { put(static_cast<std::uint64_t>(value)); }
+  template <class M>
+  void dynamic(const M& matrix) {
+    put(static_cast<std::uint64_t>(matrix.rows()));
+    put(static_cast<std::uint64_t>(matrix.cols()));
+    for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
+  }
+  bool sound = true;
+  std::vector<std::byte> bytes;
+
+ private:
+  void put(std::uint64_t word) {
+    for (int shift = 0; shift < 64; shift += 8)
+      bytes.push_back(static_cast<std::byte>((word >> shift) & 0xff));
+  }
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : left(bytes) {}
+  void operator()(double& value) {
+    value = std::bit_cast<double>(word());
+    if (!std::isfinite(value)) sound = false;
+  }
+  void operator()(bool& value) {
+    if (left.empty() || left[0] > std::byte{1}) {
+      sound = false;
+      return;
+    }
+    value = left[0] == std::byte{1};
+    left = left.subspan(1);
+  }
+  void operator()(std::int64_t& value) { value = static_cast<std::int64_t>(word()); }
+  template <class M>
+  void dynamic(M& matrix) {
+    const std::uint64_t rows = word();
+    const std::uint64_t columns = word();
+    if (!sound || rows > static_cast<std::uint64_t>(M::MaxRowsAtCompileTime) ||
+        columns > static_cast<std::uint64_t>(M::MaxColsAtCompileTime)) {
+      sound = false;
+      return;
+    }
+    matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
+  }
+  bool sound = true;
+  std::span<const std::byte> left;
+
+ private:
+  std::uint64_t word() {
+    if (left.size() < 8) {
+      sound = false;
+      return 0;
+    }
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 8; ++i) value |= std::to_integer<std::uint64_t>(left[i]) << (8 * i);
+    left = left.subspan(8);
+    return value;
+  }
+};
+
+template <class Archive, class Vector>
+void vector(Archive& archive, Vector& v) {
+  for (Eigen::Index i = 0; i < v.size(); ++i) archive(v[i]);
+}
+
+// Every field, in the order of the structs.
+template <class Archive, class State>
+void walk(Archive& archive, State& state) {
+  auto& tuft = state.tuft;
+  archive.dynamic(tuft.x);
+  archive.dynamic(tuft.hessian);
+  archive(tuft.hessian_step_s);
+  for (auto& set : tuft.set_rad) vector(archive, set);
+  archive.dynamic(tuft.reactions);
+  for (auto& p : tuft.submerged) archive(p);
+  for (auto& c : tuft.minor_mm) archive(c);
+  for (auto& sides : tuft.touches)
+    for (auto& touch : sides) {
+      archive(touch.touching);
+      vector(archive, touch.anchor);
+    }
+  archive(tuft.plane.stands);
+  vector(archive, tuft.plane.stuck);
+  vector(archive, tuft.plane.facing);
+  archive(tuft.plane.lead_mm);
+  archive(tuft.in_contact);
+  vector(archive, tuft.paper_from_handle.rotation.coeffs());
+  vector(archive, tuft.paper_from_handle.translation);
+  archive(tuft.placed);
+  for (auto& patch : state.loading.patches) {
+    archive(patch.capacity_ul);
+    archive(patch.water_ul);
+    for (auto& volume : patch.pigment_ul) archive(volume);
+  }
+  archive(state.loading.endless);
+  archive(state.footprint);
+  archive(state.timed);
+}
+
+}  // namespace
+
+std::vector<std::byte> bytes_of(const BrushState& state) {
+  Writer writer;
+  writer(static_cast<std::int64_t>(signature));
+  walk(writer, state);
+  writer(std::int64_t{state.last.time_since_epoch().count()});
+  return std::move(writer.bytes);
+}
+
+Result<BrushState> brush_state_of(std::span<const std::byte> bytes) {
+  Reader reader(bytes);
+  std::int64_t found = 0;
+  reader(found);
+  BrushState state;
+  walk(reader, state);
+  std::int64_t last = 0;
+  reader(last);
+  state.last = Timestamp(Duration(last));
+  if (!reader.sound || !reader.left.empty() || found != static_cast<std::int64_t>(signature))
+    return failure(Fault::malformed, "these bytes are no brush state of this version");
+  return state;
+}
+
+}  // namespace fude

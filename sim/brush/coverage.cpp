@@ -1,0 +1,99 @@
+#include "sim/brush/coverage.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace fude {
+
+using Eigen::Vector2d;
+
+CoverageFrame frame_around(const Vector2d& low, const Vector2d& high, double cell_mm) {
+  CoverageFrame f;
+  f.cell_mm = cell_mm;
+  f.first_word = static_cast<std::int64_t>(std::floor(low.x() / (cells_per_word * cell_mm)));
+  f.first_row = static_cast<std::int64_t>(std::floor(low.y() / cell_mm));
+  f.words = static_cast<int>(static_cast<std::int64_t>(std::floor(high.x() / (cells_per_word * cell_mm))) -
+                             f.first_word) +
+            1;
+  f.rows = static_cast<int>(static_cast<std::int64_t>(std::floor(high.y() / cell_mm)) - f.first_row) + 1;
+  return f;
+}
+
+Coverage::Coverage(const CoverageFrame& frame)
+    : frame_(frame),
+      bits_(static_cast<std::size_t>(frame.words) * static_cast<std::size_t>(frame.rows) * samples_per_side) {
+}
+
+void Coverage::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+
+// Samples whose centres lie in [from, to), in samples from the frame's left edge.
+void Coverage::add_span(int sample_row, double from, double to) {
+  const int width = frame_.words * 64;
+  const int first = std::clamp(static_cast<int>(std::ceil(from - 0.5)), 0, width);
+  const int last = std::clamp(static_cast<int>(std::ceil(to - 0.5)), 0, width) - 1;
+  if (first > last) return;
+  std::uint64_t* words = line(sample_row);
+  const int a = first >> 6;
+  const int b = last >> 6;
+  const std::uint64_t head = ~std::uint64_t{0} << (first & 63);
+  const std::uint64_t tail = ~std::uint64_t{0} >> (63 - (last & 63));
+  if (a == b) {
+    words[a] |= head & tail;
+    return;
+  }
+  words[a] |= head;
+  for (int w = a + 1; w < b; ++w) words[w] = ~std::uint64_t{0};
+  words[b] |= tail;
+}
+
+void Coverage::add_triangle(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+  const double scale = samples_per_side / frame_.cell_mm;
+  const Vector2d origin(frame_.left_mm(), frame_.bottom_mm());
+  Vector2d p = (a - origin) * scale;
+  Vector2d q = (b - origin) * scale;
+  Vector2d r = (c - origin) * scale;
+  if (p.y() > q.y()) std::swap(p, q);
+  if (q.y() > r.y()) std::swap(q, r);
+  if (p.y() > q.y()) std::swap(p, q);
+  const int height = frame_.rows * samples_per_side;
+  const int first = std::clamp(static_cast<int>(std::ceil(p.y() - 0.5)), 0, height);
+  const int last = std::clamp(static_cast<int>(std::ceil(r.y() - 0.5)), 0, height) - 1;
+  if (first > last) return;
+  const double long_slope = (r.x() - p.x()) / (r.y() - p.y());
+  const double lower_slope = q.y() > p.y() ? (q.x() - p.x()) / (q.y() - p.y()) : 0;
+  const double upper_slope = r.y() > q.y() ? (r.x() - q.x()) / (r.y() - q.y()) : 0;
+  for (int row = first; row <= last; ++row) {
+    const double y = row + 0.5;
+    const double on_long = p.x() + (y - p.y()) * long_slope;
+    const double on_short = y < q.y() ? p.x() + (y - p.y()) * lower_slope : q.x() + (y - q.y()) * upper_slope;
+    add_span(row, std::min(on_long, on_short), std::max(on_long, on_short));
+  }
+}
+
+void Coverage::add(const Coverage& other) {
+  for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] |= other.bits_[i];
+}
+
+void Coverage::add_new(const Coverage& other, const Coverage& except) {
+  for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] |= other.bits_[i] & ~except.bits_[i];
+}
+
+bool Coverage::any(int row, int word) const {
+  std::uint64_t all = 0;
+  for (int s = 0; s < samples_per_side; ++s) all |= line(row * samples_per_side + s)[word];
+  return all != 0;
+}
+
+void Coverage::count_samples(int row, int word, std::uint8_t (&counts)[cells_per_word]) const {
+  std::fill(std::begin(counts), std::end(counts), std::uint8_t{0});
+  for (int s = 0; s < samples_per_side; ++s) {
+    const std::uint64_t w = line(row * samples_per_side + s)[word];
+    if (w == 0) continue;
+    for (int cell = 0; cell < cells_per_word; ++cell)
+      counts[cell] = static_cast<std::uint8_t>(counts[cell] + std::popcount((w >> (4 * cell)) & 15U));
+  }
+}
+
+}  // namespace fude

@@ -1,0 +1,108 @@
+#include "sim/brush/loading.h"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+#include "signal/elementary.h"
+
+namespace fude {
+namespace {
+
+using std::numbers::pi;
+
+std::size_t patch_index(int along, int around) {
+  return static_cast<std::size_t>(along * patches_around + around);
+}
+
+// Moves the share of the difference in fill that one link passes, from fuller to drier.
+void exchange_between(LoadedPatch& a, LoadedPatch& b, double share) {
+  const double fill_a = a.water_ul / a.capacity_ul;
+  const double fill_b = b.water_ul / b.capacity_ul;
+  LoadedPatch& from = fill_a > fill_b ? a : b;
+  LoadedPatch& to = fill_a > fill_b ? b : a;
+  if (from.water_ul <= 0) return;
+  const double difference = fill_a > fill_b ? fill_a - fill_b : fill_b - fill_a;
+  const double flow = std::min(share * difference * std::min(a.capacity_ul, b.capacity_ul), from.water_ul);
+  const double part = flow / from.water_ul;
+  from.water_ul -= flow;
+  to.water_ul += flow;
+  for (std::size_t c = 0; c < concentrations_per_group; ++c) {
+    const double carried = part * from.pigment_ul[c];
+    from.pigment_ul[c] -= carried;
+    to.pigment_ul[c] += carried;
+  }
+}
+
+}  // namespace
+
+int patch_at(double along, double around) {
+  const int row = std::clamp(static_cast<int>(along * patches_along), 0, patches_along - 1);
+  const double turns = around / (2 * pi) + 2;
+  const double within = turns - static_cast<double>(static_cast<int>(turns));
+  const int column = std::clamp(static_cast<int>(within * patches_around), 0, patches_around - 1);
+  return row * patches_around + column;
+}
+
+Loading dry_loading(const Tuft& tuft) {
+  Loading loading;
+  std::array<double, patches_along> volume{};
+  double total = 0;
+  constexpr int slices = 8;
+  for (int i = 0; i < patches_along * slices; ++i) {
+    const double r = rest_radius_mm(tuft.spec, (i + 0.5) / (patches_along * slices));
+    volume[static_cast<std::size_t>(i / slices)] += r * r;
+    total += r * r;
+  }
+  for (int i = 0; i < patches_along; ++i)
+    for (int j = 0; j < patches_around; ++j)
+      loading.patches[patch_index(i, j)].capacity_ul =
+          tuft.spec.capacity_ul * volume[static_cast<std::size_t>(i)] / (total * patches_around);
+  return loading;
+}
+
+void fill(Loading& loading, double wetness, const Concentrations& strength) {
+  const double share = std::clamp(wetness, 0.0, 1.0);
+  for (LoadedPatch& patch : loading.patches) {
+    patch.water_ul = share * patch.capacity_ul;
+    for (std::size_t c = 0; c < concentrations_per_group; ++c)
+      patch.pigment_ul[c] = patch.water_ul * strength[c];
+  }
+}
+
+std::vector<InkLoad> offered(const Loading& loading) {
+  std::vector<InkLoad> loads(patch_count);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const LoadedPatch& patch = loading.patches[i];
+    if (patch.water_ul <= 0) continue;
+    loads[i].wetness = static_cast<float>(std::min(1.0, patch.water_ul / patch.capacity_ul));
+    for (std::size_t c = 0; c < concentrations_per_group; ++c)
+      loads[i].strength[c] = static_cast<float>(std::max(0.0, patch.pigment_ul[c]) / patch.water_ul);
+  }
+  return loads;
+}
+
+void book(Loading& loading, const Exchange& exchange) {
+  if (exchange.patches.size() > patch_count)
+    throw std::invalid_argument("an exchange with more patches than the tuft");
+  if (loading.endless) return;
+  for (std::size_t i = 0; i < exchange.patches.size(); ++i) {
+    loading.patches[i].water_ul -= exchange.patches[i].water_ul;
+    for (std::size_t c = 0; c < concentrations_per_group; ++c)
+      loading.patches[i].pigment_ul[c] -= exchange.patches[i].pigment_ul[c];
+  }
+}
+
+void even_out(Loading& loading, double rate_per_s, double step_s) {
+  // Four links a patch: a quarter of the difference at most, or neighbours would swap.
+  const double share = 0.25 * (1 - elementary::exponential(-4 * rate_per_s * step_s));
+  for (int i = 0; i < patches_along; ++i)
+    for (int j = 0; j < patches_around; ++j)
+      exchange_between(loading.patches[patch_index(i, j)],
+                       loading.patches[patch_index(i, (j + 1) % patches_around)], share);
+  for (int i = 0; i + 1 < patches_along; ++i)
+    for (int j = 0; j < patches_around; ++j)
+      exchange_between(loading.patches[patch_index(i, j)], loading.patches[patch_index(i + 1, j)], share);
+}
+
+}  // namespace fude

@@ -1,0 +1,47 @@
+// The ink a tuft carries: patches over its surface, along × around (Chu 2.6, 2.7). Volumes in µl.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "signal/ink_event.h"
+#include "sim/brush/tuft.h"
+
+namespace fude {
+
+inline constexpr int patches_along = 8;
+inline constexpr int patches_around = 8;
+inline constexpr int patch_count = patches_along * patches_around;
+
+// The patch at `along` (0 root to 1 tip) and `around` radians from the lateral line.
+int patch_at(double along, double around);
+
+struct LoadedPatch {
+  double capacity_ul = 0;
+  double water_ul = 0;  // below zero: the paper took more than was there, before the tuft heard of it
+  std::array<double, concentrations_per_group> pigment_ul{};
+};
+
+struct Loading {
+  std::array<LoadedPatch, patch_count> patches;
+  bool endless = false;
+};
+
+// A dry tuft: capacity shared out by the volume of hair behind each patch.
+Loading dry_loading(const Tuft& tuft);
+
+// Fills every patch to `wetness` (0 to 1) of its capacity with ink of `strength` (µl of full-strength
+// pigment, and glue, in one µl).
+void fill(Loading& loading, double wetness, const Concentrations& strength);
+
+std::vector<InkLoad> offered(const Loading& loading);
+
+// Books what the paper took and gave back; an endless tuft does not change. Patches beyond those of
+// the tuft are an error of the caller (std::invalid_argument).
+void book(Loading& loading, const Exchange& exchange);
+
+// Evens out moisture between neighbouring patches for `step_s` at `rate_per_s`; pigment goes with the
+// water it is dissolved in. Totals do not change.
+void even_out(Loading& loading, double rate_per_s, double step_s);
+
+}  // namespace fude

@@ -1,0 +1,239 @@
+#include "sim/brush/tuft_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "signal/elementary.h"
+#include "sim/brush/section.h"
+#include "sim/brush/skeleton.h"
+
+namespace fude {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double station_spacing_mm = 0.8;
+
+auto index(int i) { return static_cast<std::size_t>(i); }
+
+int stations_in(const Tuft& tuft, int segment) {
+  return std::max(2, static_cast<int>(tuft.length_mm[index(segment)] / station_spacing_mm + 0.5));
+}
+
+struct Cubic {
+  double p0, p1, m0, m1;
+};
+Cubic cubic_hermite(double t) {
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return {2 * t3 - 3 * t2 + 1, 3 * t2 - 2 * t3, t3 - 2 * t2 + t, t3 - t2};
+}
+
+// The point of the section at angle `around`: 0 and π on the lateral line, π/2 at the bottom.
+Vector3d section_point(const Station& s, double around) {
+  const auto [sine, cosine] = elementary::sine_cosine(around);
+  return s.centre + (cosine > 0 ? s.major_a : s.major_b) * cosine * s.lateral + s.minor * sine * s.down;
+}
+
+// Angles between which the section is under the paper: z(α) = z_O − R cos(α − δ) on either half.
+struct SubmergedArc {
+  double from = std::numeric_limits<double>::infinity();
+  double to = -std::numeric_limits<double>::infinity();
+  double lowest = 0.5 * pi;
+  double depth = -std::numeric_limits<double>::infinity();  // mm under the paper; negative: above it
+};
+
+void add_half(const Station& s, double major, double first, double last, SubmergedArc& arc) {
+  const double level = major * s.lateral.z();
+  const double upright = -s.minor * s.down.z();
+  const double reach = elementary::square_root(level * level + upright * upright);
+  if (reach == 0) return;
+  double deepest = elementary::arctangent(upright, -level);
+  if (deepest < first) deepest += 2 * pi;
+  const double clamped = std::clamp(deepest, first, last);
+  const auto [sine, cosine] = elementary::sine_cosine(clamped);
+  const double depth = -(s.centre.z() + level * cosine - upright * sine);
+  if (depth > arc.depth) {
+    arc.depth = depth;
+    arc.lowest = clamped;
+  }
+  const double ratio = s.centre.z() / reach;
+  if (ratio >= 1) return;
+  const double half = elementary::arccosine(std::max(ratio, -1.0));
+  const double from = std::max(first, deepest - half);
+  const double to = std::min(last, deepest + half);
+  if (from >= to) return;
+  arc.from = std::min(arc.from, from);
+  arc.to = std::max(arc.to, to);
+}
+
+SubmergedArc submerged_arc(const Station& s) {
+  SubmergedArc arc;
+  add_half(s, s.major_a, -0.5 * pi, 0.5 * pi, arc);
+  add_half(s, s.major_b, 0.5 * pi, 1.5 * pi, arc);
+  return arc;
+}
+
+ContactRing ring_of(const Station& s, const SubmergedArc& arc) {
+  ContactRing ring;
+  ring.along = s.along;
+  for (int i = 0; i < ring_points; ++i) {
+    const double around = arc.from + (arc.to - arc.from) * i / (ring_points - 1);
+    ring.point[index(i)] = section_point(s, around).head<2>();
+    ring.around[index(i)] = s.flipped ? 2 * pi - around : around;
+  }
+  return ring;
+}
+
+// The ring drawn together about `target` to `width` of itself.
+ContactRing narrowed(const ContactRing& ring, const Vector2d& low, const Vector2d& target, double along,
+                     double width) {
+  ContactRing narrow = ring;
+  narrow.along = along;
+  for (Vector2d& p : narrow.point) p = target + width * (p - low);
+  return narrow;
+}
+
+// Where the surface leaves the paper between two stations its width falls as the root of its depth.
+void append_ending(const Station& wet, const SubmergedArc& wet_arc, const Station& dry,
+                   const SubmergedArc& dry_arc, bool opening, std::vector<ContactRing>& run) {
+  const ContactRing ring = ring_of(wet, wet_arc);
+  const Vector2d low = section_point(wet, wet_arc.lowest).head<2>();
+  const Vector2d far = section_point(dry, dry_arc.lowest).head<2>();
+  const double share = wet_arc.depth / (wet_arc.depth - dry_arc.depth);
+  constexpr std::array<double, 3> steps = {0.64, 0.91, 1};
+  constexpr std::array<double, 3> widths = {0.6, 0.3, 0};
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t j = index(opening ? 2 - i : i);
+    const double t = share * steps[j];
+    run.push_back(
+        narrowed(ring, low, low + t * (far - low), wet.along + t * (dry.along - wet.along), widths[j]));
+  }
+}
+
+// A steep tip touches with its point alone, which no section's plane shows.
+void append_tip(const Station& tip, Contact& contact) {
+  const double r = tip.minor;
+  const double height = tip.centre.z();
+  if (height >= r) return;
+  const double radius = elementary::square_root(r * r - height * height * (height > 0 ? 1 : 0));
+  std::vector<ContactRing> run;
+  for (int i = -2; i <= 2; ++i) {
+    const double y = radius * i / 2;
+    const double half = elementary::square_root(std::max(0.0, radius * radius - y * y));
+    ContactRing ring;
+    ring.along = 1;
+    for (int j = 0; j < ring_points; ++j) {
+      ring.point[index(j)] = tip.centre.head<2>() + Vector2d(half * (j - 2) / 2, y);
+      ring.around[index(j)] = 0.5 * pi;
+    }
+    run.push_back(ring);
+  }
+  contact.runs.push_back(run);
+}
+
+}  // namespace
+
+TuftSurface surface_of(const Tuft& tuft, const TuftState& state) {
+  const Skeleton skeleton = pose_skeleton(tuft, state.x, state.paper_from_handle);
+  const Layout layout{tuft.segments};
+  const int n = tuft.segments;
+  const auto stretch = [&](int node, int side) {
+    return node > 0 && node < n ? state.x[layout.stretch(node, side)] : 0.0;
+  };
+  const auto tangent = [&](int node) -> Vector3d {
+    if (node == 0) return skeleton.along[0];
+    if (node == n) return skeleton.along[index(n - 1)];
+    return (skeleton.along[index(node - 1)] + skeleton.along[index(node)]).normalized();
+  };
+  TuftSurface surface;
+  double head_mm = 0;
+  for (int i = 0; i < n; ++i) {
+    const double length = tuft.length_mm[index(i)];
+    const int count = stations_in(tuft, i);
+    const Vector3d m0 = length * tangent(i);
+    const Vector3d m1 = length * tangent(i + 1);
+    for (int j = 0; j < count + (i + 1 == n ? 1 : 0); ++j) {
+      const double t = static_cast<double>(j) / count;
+      const Cubic h = cubic_hermite(t);
+      Station s;
+      s.along = (head_mm + t * length) / tuft.spec.tuft_length_mm;
+      s.centre = h.p0 * skeleton.node[index(i)] + h.p1 * skeleton.node[index(i + 1)] + h.m0 * m0 + h.m1 * m1;
+      const Vector3d direction = ((1 - t) * m0 + t * m1).normalized();
+      s.lateral = (1 - t) * skeleton.lateral[index(i)] + t * skeleton.lateral[index(i + 1)];
+      if (i == 0) s.lateral = skeleton.lateral[1];
+      s.lateral = (s.lateral - direction * direction.dot(s.lateral)).normalized();
+      s.down = direction.cross(s.lateral);
+      if (s.down.z() > 0) {
+        s.down = -s.down;
+        s.flipped = true;
+      }
+      const double ease = h.p1;
+      const Section section = section_of(rest_radius_mm(tuft.spec, s.along),
+                                         (1 - ease) * stretch(i, 0) + ease * stretch(i + 1, 0),
+                                         (1 - ease) * stretch(i, 1) + ease * stretch(i + 1, 1));
+      s.major_a = section.major_a;
+      s.major_b = section.major_b;
+      s.minor = section.minor;
+      // Between nodes the spine may sag; the paper stops Φ there as well.
+      const double lowest = tuft.contact_share * reach_below(section, s.lateral.z()).depth;
+      if (i > 0) s.centre.z() = std::max(s.centre.z(), lowest);
+      surface.push_back(s);
+    }
+    head_mm += length;
+  }
+  return surface;
+}
+
+TuftSurface between(const TuftSurface& a, const TuftSurface& b, double t) {
+  TuftSurface mixed = b;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool turned_over = a[i].flipped != b[i].flipped;
+    mixed[i].centre = (1 - t) * a[i].centre + t * b[i].centre;
+    mixed[i].lateral = ((1 - t) * a[i].lateral + t * b[i].lateral).normalized();
+    if (!turned_over) mixed[i].down = ((1 - t) * a[i].down + t * b[i].down).normalized();
+    mixed[i].major_a = (1 - t) * a[i].major_a + t * b[i].major_a;
+    mixed[i].major_b = (1 - t) * a[i].major_b + t * b[i].major_b;
+    mixed[i].minor = (1 - t) * a[i].minor + t * b[i].minor;
+  }
+  return mixed;
+}
+
+double largest_motion_mm(const TuftSurface& a, const TuftSurface& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, (b[i].centre - a[i].centre).head<2>().norm());
+  return largest;
+}
+
+Contact contact_of(const TuftSurface& surface) {
+  Contact contact;
+  std::vector<SubmergedArc> arcs;
+  arcs.reserve(surface.size());
+  for (const Station& s : surface) {
+    const double widest = std::max({s.major_a, s.major_b, s.minor});
+    arcs.push_back(s.centre.z() < widest ? submerged_arc(s) : SubmergedArc{});
+  }
+  std::vector<ContactRing> run;
+  const auto known = [&](std::size_t i) { return std::isfinite(arcs[i].depth); };
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const bool wet = arcs[i].from < arcs[i].to;
+    if (!wet) continue;
+    if (run.empty() && i > 0 && known(i - 1))
+      append_ending(surface[i], arcs[i], surface[i - 1], arcs[i - 1], true, run);
+    run.push_back(ring_of(surface[i], arcs[i]));
+    const bool last = i + 1 == surface.size();
+    if (!last && arcs[i + 1].from < arcs[i + 1].to) continue;
+    if (!last && known(i + 1)) append_ending(surface[i], arcs[i], surface[i + 1], arcs[i + 1], false, run);
+    contact.runs.push_back(run);
+    run.clear();
+  }
+  if (!surface.empty()) append_tip(surface.back(), contact);
+  return contact;
+}
+
+}  // namespace fude

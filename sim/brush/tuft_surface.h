@@ -1,0 +1,53 @@
+// The tuft's surface: elliptic sections swept along the spine (Chu 2.4.2), and where it meets the
+// paper. Paper frame, mm.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "sim/brush/tuft.h"
+#include "sim/brush/tuft_state.h"
+
+namespace fude {
+
+// One section: two half-ellipses with half axes major_a (where `lateral` points) and major_b along the
+// lateral line, and `minor` along `down`, the direction in the section's plane that looks to the paper.
+struct Station {
+  double along = 0;  // 0 root to 1 tip
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lateral = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d down = Eigen::Vector3d::UnitY();
+  double major_a = 0;
+  double major_b = 0;
+  double minor = 0;
+  bool flipped = false;  // `down` is the far side of the hair: the texture runs the other way round
+};
+
+using TuftSurface = std::vector<Station>;  // root to tip; as many for every state of one tuft
+
+TuftSurface surface_of(const Tuft& tuft, const TuftState& state);
+
+// Part of the way from a to b, t in [0, 1].
+TuftSurface between(const TuftSurface& a, const TuftSurface& b, double t);
+
+// The largest distance by which a station moves over the paper, mm.
+double largest_motion_mm(const TuftSurface& a, const TuftSurface& b);
+
+// Points where one section dips into the paper, from side to side, seen from above.
+inline constexpr int ring_points = 5;
+struct ContactRing {
+  double along = 0;
+  std::array<Eigen::Vector2d, ring_points> point;  // mm
+  std::array<double, ring_points> around{};        // angle about the spine from the lateral line, rad
+};
+
+// What of the surface is in the paper: runs of rings, each run one patch of wetted paper.
+struct Contact {
+  std::vector<std::vector<ContactRing>> runs;
+};
+
+// The paper cuts the surface at z = 0; the shrunk section keeps it from cutting deeper.
+Contact contact_of(const TuftSurface& surface);
+
+}  // namespace fude
