@@ -1,0 +1,43 @@
+// Someone else's recording becomes a session: raw events are kept as they came and run through the
+// real driver's decoding.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "capture/import/import.h"
+#include "capture/session.h"
+#include "signal/result.h"
+
+namespace fude {
+
+// What came in and what became of it; nothing is lost without a count.
+struct ImportedStream {
+  std::string device;  // empty where no description was found
+  std::uint64_t events = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t strokes = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t out_of_range = 0;
+  bool raw_only = false;  // no description, or no pen: the events are kept but not decoded
+};
+
+struct ImportReceipt {
+  ImportFormat format{};
+  std::vector<ImportedStream> streams;
+};
+
+struct ImportWish {
+  ImportOptions options;
+  bool overwrite = false;
+};
+
+// The session appears whole or not at all.
+// Errors: those of import_file; usage where `session` exists and may not be replaced; storage.
+Result<ImportReceipt> import_session(const std::filesystem::path& file, const std::filesystem::path& session,
+                                     const ImportWish& wish);
+
+}  // namespace fude

@@ -1,0 +1,45 @@
+#include "rig/share_folder.h"
+
+#include <cstdlib>
+#include <set>
+
+namespace fude {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> folders() {
+  std::vector<fs::path> found;
+  const char* data_home = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  if (data_home && *data_home)
+    found.push_back(fs::path(data_home) / "fude");
+  else if (home && *home)
+    found.push_back(fs::path(home) / ".local/share/fude");
+  if (const char* own = std::getenv("FUDE_SHARE"); own && *own) found.emplace_back(own);
+  found.emplace_back(FUDE_SHARE_FOLDER);
+  return found;
+}
+
+}  // namespace
+
+Result<fs::path> find_shared(const std::string& kind, const std::string& name, const std::string& extension) {
+  std::error_code ignored;
+  if (name.find('/') != std::string::npos || name.ends_with(extension)) {
+    if (fs::is_regular_file(name, ignored)) return fs::path(name);
+    return failure(Fault::not_found, name + " is not there");
+  }
+  std::set<std::string> names;
+  for (const fs::path& folder : folders()) {
+    const fs::path file = folder / kind / (name + extension);
+    if (fs::is_regular_file(file, ignored)) return file;
+    for (const auto& entry : fs::directory_iterator(folder / kind, ignored))
+      if (entry.path().extension() == extension) names.insert(entry.path().stem().string());
+  }
+  std::string list;
+  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+  return failure(Fault::not_found, "there is no '" + name + "' among the " + kind +
+                                       "; there are: " + (list.empty() ? "none" : list));
+}
+
+}  // namespace fude

@@ -1,0 +1,82 @@
+#include "rig/sheet_plan.h"
+
+#include <gtest/gtest.h>
+
+namespace fude {
+namespace {
+
+RecordedPen pen(DeviceNumber device, double x, double y, bool contact) {
+  RecordedPen p;
+  p.device = device;
+  p.sample.in_proximity = true;
+  p.sample.in_contact = contact;
+  p.sample.x_counts = x;
+  p.sample.y_counts = y;
+  return p;
+}
+
+Session pixels() {
+  Session s;
+  DeviceDescription d;
+  d.name = "strokes";
+  d.transport = "text";
+  d.mm_per_count = 0.1;
+  s.devices.push_back({1, d});
+  s.pens = {pen(1, 0, 0, false), pen(1, 100, 200, true), pen(1, 500, 400, true)};
+  return s;
+}
+
+Session tablet() {
+  Session s;
+  DeviceDescription d;
+  d.name = "tablet";
+  d.axes = {{0, 0, 40000, 0, 0, 200, 0}, {1, 0, 20000, 0, 0, 200, 0}};
+  d.width = Millimetres(200);
+  d.height = Millimetres(100);
+  s.devices.push_back({1, d});
+  s.pens = {pen(1, 0, 0, true)};
+  return s;
+}
+
+TEST(SheetPlan, TheActiveAreaIsTheSheet) {
+  const SheetPlan plan = plan_sheet(tablet(), {}).value();
+  EXPECT_EQ(plan.sheet.width, Millimetres(200));
+  EXPECT_EQ(plan.sheet.height, Millimetres(100));
+}
+
+TEST(SheetPlan, StrokesWithoutATabletGetTwentyMillimetresMore) {
+  const SheetPlan plan = plan_sheet(pixels(), {}).value();
+  EXPECT_DOUBLE_EQ(plan.sheet.width.value, 60);
+  EXPECT_DOUBLE_EQ(plan.sheet.height.value, 40);
+  const Eigen::Vector2d first = nib_on_paper(pixels().pens[1].sample, plan.mappings.at(1));
+  EXPECT_NEAR(first.x(), 10, 1e-12);
+  EXPECT_NEAR(first.y(), 30, 1e-12);  // y of the paper points away from the painter
+}
+
+TEST(SheetPlan, AnotherSheetKeepsTheMiddle) {
+  const SheetPlan plan = plan_sheet(pixels(), {.sheet = Extent{Millimetres(100), Millimetres(90)}}).value();
+  const Eigen::Vector2d first = nib_on_paper(pixels().pens[1].sample, plan.mappings.at(1));
+  const Eigen::Vector2d last = nib_on_paper(pixels().pens[2].sample, plan.mappings.at(1));
+  EXPECT_NEAR(0.5 * (first.x() + last.x()), 50, 1e-12);
+  EXPECT_NEAR(0.5 * (first.y() + last.y()), 45, 1e-12);
+  EXPECT_NEAR(last.x() - first.x(), 40, 1e-12);
+}
+
+TEST(SheetPlan, ATabletOfUnknownSizeNeedsOne) {
+  Session s = tablet();
+  s.devices[0].description.width.reset();
+  s.devices[0].description.height.reset();
+  EXPECT_FALSE(plan_sheet(s, {.sheet = Extent{Millimetres(50), Millimetres(50)}}).has_value());
+  const auto plan = plan_sheet(s, {.tablet = Extent{Millimetres(120), Millimetres(80)}});
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->sheet.width, Millimetres(120));
+}
+
+TEST(SheetPlan, AnEmptySessionStillHasASheet) { EXPECT_TRUE(plan_sheet(Session{}, {}).has_value()); }
+
+TEST(SheetPlan, AHugeSheetIsRefused) {
+  EXPECT_FALSE(plan_sheet(Session{}, {.sheet = Extent{Millimetres(1e6), Millimetres(10)}}).has_value());
+}
+
+}  // namespace
+}  // namespace fude
