@@ -11,7 +11,20 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace fude::tile {
+namespace fude {
+
+// Where the cells of a rectangle lie in the planes.
+struct PlaneView {
+  float* origin = nullptr;   // its lower left cell in the first plane
+  std::ptrdiff_t row = 0;    // floats from one row of cells to the next
+  std::ptrdiff_t plane = 0;  // floats from one plane to the next
+
+  float* cells(std::size_t plane_index, int y) const {
+    return origin + static_cast<std::ptrdiff_t>(plane_index) * plane + y * row;
+  }
+};
+
+namespace tile {
 
 inline constexpr int side = 32;  // cells; see docs/kernels.md for what 64 costs
 inline constexpr int cells = side * side;
@@ -40,4 +53,5 @@ inline constexpr std::size_t neighbourhood = 9;
 inline constexpr float closed_blocking = 3;
 inline constexpr float closed_grain = 1e9F;
 
-}  // namespace fude::tile
+}  // namespace tile
+}  // namespace fude

@@ -309,7 +309,7 @@ void step_tile(const LatticeNumbers& k, const std::array<float*, tile::neighbour
 }
 
 template <bool ink>
-void step_dense(const LatticeNumbers& k, const DenseBlock& block, int parity, TileOutcome& outcome) {
+void step_dense(const LatticeNumbers& k, const PlaneView& block, int parity, TileOutcome& outcome) {
   const auto source = [&](std::size_t plane, int y) -> Source {
     const float* row = block.origin + static_cast<std::ptrdiff_t>(plane) * block.plane + y * block.row;
     return {row - 1, row, row + dense_width};

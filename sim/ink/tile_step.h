@@ -19,13 +19,8 @@ struct TileOutcome {
   std::uint16_t wet = 0;
 };
 
-// The dense lattice: the same planes, each over the whole sheet with a margin of closed cells.
-struct DenseBlock {
-  float* origin;         // of the block's first cell in the first plane
-  std::ptrdiff_t row;    // floats from one row of cells to the next
-  std::ptrdiff_t plane;  // floats from one plane to the next
-};
-inline constexpr int dense_width = 128;  // cells of a block; it is tile::side rows high
+// The dense lattice steps blocks of this width, tile::side rows high, in planes over the whole sheet.
+inline constexpr int dense_width = 128;
 
 struct StepKernels {
   // All of the ink: blocks of the nine tiles of the neighbourhood, the parity to read.
@@ -34,8 +29,8 @@ struct StepKernels {
   // Stream, block and collide alone, without fronts, evaporation or pigment.
   void (*tile_water)(const LatticeNumbers&, const std::array<float*, tile::neighbourhood>&, int parity,
                      TileOutcome&);
-  void (*dense)(const LatticeNumbers&, const DenseBlock&, int parity, TileOutcome&);
-  void (*dense_water)(const LatticeNumbers&, const DenseBlock&, int parity, TileOutcome&);
+  void (*dense)(const LatticeNumbers&, const PlaneView&, int parity, TileOutcome&);
+  void (*dense_water)(const LatticeNumbers&, const PlaneView&, int parity, TileOutcome&);
 };
 
 // The kernels for a set that the processor has.

@@ -1,0 +1,190 @@
+#include "sim/ink/cpu_ink.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/ink/kernels/lang_cpp.h"
+#include "sim/ink/sheet_state.h"
+#include "sim/ink/touched_cells.h"
+
+namespace fude {
+namespace {
+
+// clang-format off
+#include "sim/ink/kernels/numeric.k"
+#include "sim/ink/kernels/site.k"
+#include "sim/ink/kernels/deposit.k"
+// clang-format on
+
+int cells_in(double mm, double cell_mm) {
+  return std::max(1, static_cast<int>(std::ceil(mm / cell_mm - 1e-9)));
+}
+
+Population population(const PlaneView& view, std::size_t first, int x, int y) {
+  const auto f = [&](std::size_t i) { return view.cells(first + i, y)[x]; };
+  return {f(tile::rest), f(tile::e),  f(tile::n),  f(tile::w), f(tile::s),
+          f(tile::ne),   f(tile::nw), f(tile::sw), f(tile::se)};
+}
+
+}  // namespace
+
+CpuInk::CpuInk(const InkSetup& setup, InstructionSet set)
+    : setup_(setup),
+      columns_(cells_in(setup.width_mm, setup.cell_mm)),
+      rows_(cells_in(setup.height_mm, setup.cell_mm)),
+      numbers_(lattice_numbers(setup.paper, setup.cell_mm)),
+      threads_(setup.threads) {
+  const PaperTexture texture(setup.paper, setup.seed, setup.cell_mm, columns_, rows_, setup.flow);
+  const LatticeSetup lattice{numbers_, texture, columns_, rows_, &step_kernels(set), &threads_};
+  lattice_ = setup.dense ? make_dense_lattice(lattice) : make_tiled_lattice(lattice);
+}
+
+double CpuInk::ul_in_cell() const { return setup_.paper.capacity * setup_.cell_mm * setup_.cell_mm; }
+
+void CpuInk::apply(const InkEvent& event) {
+  Exchange exchange;
+  if (const auto* what = std::get_if<Deposit>(&event.what))
+    exchange = deposit(*what);
+  else
+    dry_sheet();
+  exchange.event = event.id;
+  pending_.push_back(std::move(exchange));
+}
+
+Exchange CpuInk::deposit(const Deposit& what) {
+  Exchange exchange;
+  exchange.patches.resize(what.patches.size());
+  const std::size_t flowing = static_cast<std::size_t>(lattice_->parity()) * tile::flowing_planes;
+  AwakeTile* tile = nullptr;
+  for (const TouchedCell& cell : touched_cells(what, setup_.cell_mm, columns_, rows_)) {
+    const TilePlace place{cell.row / tile::side, cell.column / tile::side};
+    if (tile == nullptr || tile->place != place) tile = &lattice_->wake(place);
+    const int x = cell.column % tile::side;
+    const int y = cell.row % tile::side;
+    const InkLoad& load = what.patches[cell.patch];
+    float& surface = tile->view.cells(tile::still_begin + tile::surface, y)[x];
+    std::array<float*, 4> mass;
+    for (std::size_t c = 0; c < 4; ++c)
+      mass[c] = &tile->view.cells(tile::still_begin + tile::surface_mass + c, y)[x];
+    vec4 surface_mass{*mass[0], *mass[1], *mass[2], *mass[3]};
+    float taken;
+    vec4 taken_mass;
+    touch(numbers_, total(population(tile->view, flowing, x, y)), load.wetness,
+          {load.strength[0], load.strength[1], load.strength[2], load.strength[3]}, cell.fresh,
+          cell.contact_s, surface, surface_mass, taken, taken_mass);
+    *mass[0] = surface_mass.x;
+    *mass[1] = surface_mass.y;
+    *mass[2] = surface_mass.z;
+    *mass[3] = surface_mass.w;
+    tile->wet |= 1U << tile::own;
+    PatchExchange& patch = exchange.patches[cell.patch];
+    patch.water_ul += static_cast<double>(taken);
+    const std::array<float, 4> pigment{taken_mass.x, taken_mass.y, taken_mass.z, taken_mass.w};
+    for (std::size_t c = 0; c < 4; ++c) patch.pigment_ul[c] += static_cast<double>(pigment[c]);
+  }
+  for (PatchExchange& patch : exchange.patches) {
+    water_deposited_ += patch.water_ul;
+    patch.water_ul *= ul_in_cell();
+    for (std::size_t c = 0; c < 4; ++c) {
+      pigment_deposited_[c] += patch.pigment_ul[c];
+      patch.pigment_ul[c] *= ul_in_cell();
+    }
+  }
+  return exchange;
+}
+
+void CpuInk::dry_sheet() {
+  water_evaporated_ += sum_layers(*lattice_).water_left;
+  const std::size_t flowing = static_cast<std::size_t>(lattice_->parity()) * tile::flowing_planes;
+  for (AwakeTile& t : lattice_->awake()) {
+    for (int y = 0; y < tile::side; ++y) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        float* flow = t.view.cells(flowing + tile::mass + c, y);
+        float* surface = t.view.cells(tile::still_begin + tile::surface_mass + c, y);
+        float* fixed = t.view.cells(tile::still_begin + tile::fixed_mass + c, y);
+        for (int x = 0; x < tile::side; ++x) fixed[x] += flow[x] + surface[x];
+        std::fill_n(flow, tile::side, 0.0F);
+        std::fill_n(surface, tile::side, 0.0F);
+      }
+      for (std::size_t f = tile::rest; f <= tile::se; ++f)
+        std::fill_n(t.view.cells(flowing + f, y), tile::side, 0.0F);
+      std::fill_n(t.view.cells(tile::still_begin + tile::surface, y), tile::side, 0.0F);
+    }
+    lay_fixed(t.view, lattice_->parity(), fixed_of(t.view));
+    t.wet = 0;
+  }
+}
+
+void CpuInk::step() {
+  water_evaporated_ += lattice_->step(Stage::full);
+  ++steps_;
+  ready_.insert(ready_.end(), std::make_move_iterator(pending_.begin()),
+                std::make_move_iterator(pending_.end()));
+  pending_.clear();
+}
+
+std::vector<Exchange> CpuInk::collect() { return std::exchange(ready_, {}); }
+
+InkTotals CpuInk::totals() const {
+  InkTotals t = sum_layers(*lattice_);
+  t.water_deposited = water_deposited_ * ul_in_cell();
+  t.water_evaporated = water_evaporated_ * ul_in_cell();
+  t.water_left *= ul_in_cell();
+  for (std::size_t c = 0; c < concentrations_per_group; ++c) {
+    t.pigment_deposited[c] = pigment_deposited_[c] * ul_in_cell();
+    t.pigment_surface[c] *= ul_in_cell();
+    t.pigment_flow[c] *= ul_in_cell();
+    t.pigment_fixed[c] *= ul_in_cell();
+  }
+  return t;
+}
+
+std::size_t CpuInk::active_cells() const { return lattice_->awake().size() * tile::cells; }
+
+bool CpuInk::still() const {
+  return std::ranges::none_of(lattice_->awake(),
+                              [](const AwakeTile& t) { return (t.wet >> tile::own & 1) != 0; });
+}
+
+InkRegion CpuInk::read(const CellRect& wanted) const {
+  InkRegion region;
+  region.rect.left = std::clamp(wanted.left, 0, columns_);
+  region.rect.bottom = std::clamp(wanted.bottom, 0, rows_);
+  region.rect.columns =
+      std::clamp(wanted.left + wanted.columns, region.rect.left, columns_) - region.rect.left;
+  region.rect.rows = std::clamp(wanted.bottom + wanted.rows, region.rect.bottom, rows_) - region.rect.bottom;
+  const std::size_t cells =
+      static_cast<std::size_t>(region.rect.columns) * static_cast<std::size_t>(region.rect.rows);
+  region.flow_water.resize(cells);
+  region.surface_water.resize(cells);
+  region.pigment.resize(cells);
+  const auto per_area = static_cast<float>(setup_.paper.capacity);
+  for (const AwakeTile& t : lattice_->awake()) read_tile(t, lattice_->parity(), per_area, region);
+  for (const auto& [place, pigment] : lattice_->asleep())
+    read_sleeping_tile(place, pigment, per_area, region);
+  return region;
+}
+
+InkSnapshot CpuInk::snapshot() const {
+  return {save_tiles(*lattice_),
+          steps_,
+          water_deposited_,
+          water_evaporated_,
+          pigment_deposited_,
+          pending_,
+          ready_};
+}
+
+void CpuInk::restore(const InkSnapshot& snapshot) {
+  load_tiles(snapshot.tiles, *lattice_);
+  steps_ = snapshot.steps;
+  water_deposited_ = snapshot.water_deposited;
+  water_evaporated_ = snapshot.water_evaporated;
+  pigment_deposited_ = snapshot.pigment_deposited;
+  pending_ = snapshot.pending;
+  ready_ = snapshot.ready;
+}
+
+std::uint64_t CpuInk::hash() const { return hash_tiles(save_tiles(*lattice_)); }
+
+}  // namespace fude

@@ -1,0 +1,180 @@
+#include "sim/ink/sheet_state.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fude {
+namespace {
+
+constexpr std::size_t mass_planes = 4;
+constexpr std::size_t saved_still = tile::flowing_planes;  // a saved tile keeps one parity of them
+constexpr std::size_t saved_planes = saved_still + tile::still_planes;
+
+std::size_t flowing(int parity, std::size_t plane) {
+  return static_cast<std::size_t>(parity) * tile::flowing_planes + plane;
+}
+
+double sum(const PlaneView& view, std::size_t plane) {
+  double total = 0;
+  for (int y = 0; y < tile::side; ++y) {
+    const float* row = view.cells(plane, y);
+    for (int x = 0; x < tile::side; ++x) total += static_cast<double>(row[x]);
+  }
+  return total;
+}
+
+double sum(const FixedPigment& pigment, std::size_t plane) {
+  double total = 0;
+  for (std::size_t i = 0; i < tile::cells; ++i)
+    total += static_cast<double>(pigment[plane * tile::cells + i]);
+  return total;
+}
+
+// The part of a tile that a region covers, in the tile's own cells.
+struct Cut {
+  int left, right, bottom, top;
+};
+
+Cut cut(TilePlace place, const CellRect& rect) {
+  const int x = place.column * tile::side;
+  const int y = place.row * tile::side;
+  return {std::max(rect.left - x, 0), std::min(rect.left + rect.columns - x, tile::side),
+          std::max(rect.bottom - y, 0), std::min(rect.bottom + rect.rows - y, tile::side)};
+}
+
+std::size_t region_index(const InkRegion& region, TilePlace place, int x, int y) {
+  return static_cast<std::size_t>(place.row * tile::side + y - region.rect.bottom) *
+             static_cast<std::size_t>(region.rect.columns) +
+         static_cast<std::size_t>(place.column * tile::side + x - region.rect.left);
+}
+
+bool any(const std::vector<float>& values) {
+  return std::ranges::any_of(values, [](float v) { return v != 0; });
+}
+
+InkSnapshot::Tile save(const AwakeTile& tile, int parity) {
+  InkSnapshot::Tile saved{tile.place.column, tile.place.row, true, {}};
+  saved.planes.reserve(saved_planes * tile::cells);
+  const auto append = [&](std::size_t plane) {
+    for (int y = 0; y < tile::side; ++y) {
+      const float* row = tile.view.cells(plane, y);
+      saved.planes.insert(saved.planes.end(), row, row + tile::side);
+    }
+  };
+  for (std::size_t p = 0; p < tile::flowing_planes; ++p) append(flowing(parity, p));
+  for (std::size_t p = 0; p < tile::still_planes; ++p) append(tile::still_begin + p);
+  return saved;
+}
+
+// Whether a saved tile holds anything besides fixed pigment.
+bool wet(const InkSnapshot::Tile& tile) {
+  const auto nonzero = [&](std::size_t first, std::size_t last) {
+    return std::any_of(tile.planes.begin() + static_cast<std::ptrdiff_t>(first * tile::cells),
+                       tile.planes.begin() + static_cast<std::ptrdiff_t>(last * tile::cells),
+                       [](float v) { return v != 0; });
+  };
+  return nonzero(0, tile::fixed_ink) || nonzero(saved_still + tile::surface, saved_still + tile::fixed_mass);
+}
+
+void load(const InkSnapshot::Tile& saved, int parity, AwakeTile& tile) {
+  const float* from = saved.planes.data();
+  const auto take = [&](std::size_t plane) {
+    for (int y = 0; y < tile::side; ++y, from += tile::side)
+      std::copy_n(from, tile::side, tile.view.cells(plane, y));
+  };
+  for (std::size_t p = 0; p < tile::flowing_planes; ++p) take(flowing(parity, p));
+  for (std::size_t p = 0; p < tile::still_planes; ++p) take(tile::still_begin + p);
+  // Until the next step has looked, take every edge for wet.
+  tile.wet = (1U << tile::neighbourhood) - 1;
+}
+
+}  // namespace
+
+InkTotals sum_layers(Lattice& lattice) {
+  InkTotals totals;
+  for (const AwakeTile& t : lattice.awake()) {
+    for (std::size_t f = tile::rest; f <= tile::se; ++f)
+      totals.water_left += sum(t.view, flowing(lattice.parity(), f));
+    totals.water_left += sum(t.view, tile::still_begin + tile::surface);
+    for (std::size_t c = 0; c < mass_planes; ++c) {
+      totals.pigment_flow[c] += sum(t.view, flowing(lattice.parity(), tile::mass + c));
+      totals.pigment_surface[c] += sum(t.view, tile::still_begin + tile::surface_mass + c);
+      totals.pigment_fixed[c] += sum(t.view, tile::still_begin + tile::fixed_mass + c);
+    }
+  }
+  for (const auto& [place, pigment] : lattice.asleep())
+    for (std::size_t c = 0; c < mass_planes; ++c) totals.pigment_fixed[c] += sum(pigment, c);
+  return totals;
+}
+
+void read_tile(const AwakeTile& t, int parity, float per_area, InkRegion& region) {
+  const Cut c = cut(t.place, region.rect);
+  for (int y = c.bottom; y < c.top; ++y)
+    for (int x = c.left; x < c.right; ++x) {
+      const std::size_t i = region_index(region, t.place, x, y);
+      float water = 0;
+      for (std::size_t f = tile::rest; f <= tile::se; ++f) water += t.view.cells(flowing(parity, f), y)[x];
+      region.flow_water[i] = water;
+      region.surface_water[i] = t.view.cells(tile::still_begin + tile::surface, y)[x];
+      for (std::size_t m = 0; m < mass_planes; ++m)
+        region.pigment[i][m] = per_area * (t.view.cells(flowing(parity, tile::mass + m), y)[x] +
+                                           t.view.cells(tile::still_begin + tile::surface_mass + m, y)[x] +
+                                           t.view.cells(tile::still_begin + tile::fixed_mass + m, y)[x]);
+    }
+}
+
+void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_area, InkRegion& region) {
+  const Cut c = cut(place, region.rect);
+  for (int y = c.bottom; y < c.top; ++y)
+    for (int x = c.left; x < c.right; ++x) {
+      Concentrations& out = region.pigment[region_index(region, place, x, y)];
+      for (std::size_t m = 0; m < mass_planes; ++m)
+        out[m] = per_area * pigment[m * tile::cells + static_cast<std::size_t>(y * tile::side + x)];
+    }
+}
+
+std::vector<InkSnapshot::Tile> save_tiles(Lattice& lattice) {
+  std::vector<InkSnapshot::Tile> tiles;
+  for (const AwakeTile& t : lattice.awake()) {
+    InkSnapshot::Tile whole = save(t, lattice.parity());
+    if (wet(whole)) {
+      tiles.push_back(std::move(whole));
+      continue;
+    }
+    FixedPigment fixed = fixed_of(t.view);
+    if (any(fixed)) tiles.push_back({t.place.column, t.place.row, false, std::move(fixed)});
+  }
+  for (const auto& [place, pigment] : lattice.asleep())
+    tiles.push_back({place.column, place.row, false, pigment});
+  std::ranges::sort(tiles, [](const auto& a, const auto& b) {
+    return TilePlace{a.row, a.column} < TilePlace{b.row, b.column};
+  });
+  return tiles;
+}
+
+void load_tiles(const std::vector<InkSnapshot::Tile>& tiles, Lattice& lattice) {
+  lattice.clear();
+  for (const InkSnapshot::Tile& saved : tiles) {
+    const TilePlace place{saved.row, saved.column};
+    if (saved.wet)
+      load(saved, lattice.parity(), lattice.wake(place));
+    else
+      lattice.lay(place, saved.planes);
+  }
+}
+
+std::uint64_t hash_tiles(const std::vector<InkSnapshot::Tile>& tiles) {
+  std::uint64_t h = 0xcbf29ce484222325ULL;
+  const auto add = [&](std::uint64_t word) {
+    h = (h ^ word) * 0x9e3779b97f4a7c15ULL;
+    h ^= h >> 29;
+  };
+  for (const InkSnapshot::Tile& t : tiles) {
+    add(static_cast<std::uint64_t>(t.row) << 32 | static_cast<std::uint32_t>(t.column));
+    // Adding nought makes -0 and 0 the same word.
+    for (float v : t.planes) add(std::bit_cast<std::uint32_t>(v + 0.0F));
+  }
+  return h;
+}
+
+}  // namespace fude
