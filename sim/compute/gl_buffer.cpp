@@ -1,0 +1,86 @@
+#include "sim/compute/gl_buffer.h"
+
+#include <epoxy/gl.h>
+
+namespace fude {
+namespace {
+
+GLintptr signed_size(std::size_t n) { return static_cast<GLintptr>(n); }
+
+}  // namespace
+
+Result<GlBuffer> GlBuffer::make(std::size_t bytes) {
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  GlBuffer buffer;
+  buffer.bytes_ = bytes;
+  glGenBuffers(1, &buffer.id_);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, buffer.id_);
+  glBufferData(GL_COPY_WRITE_BUFFER, signed_size(bytes), nullptr, GL_DYNAMIC_COPY);
+  glClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  if (glGetError() != GL_NO_ERROR)
+    return failure(Fault::unsupported, "the graphics card has no room for " +
+                                           std::to_string(bytes / 1'000'000) +
+                                           " MB more: use --backend cpu, larger cells or a smaller sheet");
+  return buffer;
+}
+
+GlBuffer::~GlBuffer() {
+  if (id_ != 0) glDeleteBuffers(1, &id_);
+}
+
+void GlBuffer::bind_storage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, id_); }
+
+void GlBuffer::bind_uniforms(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, id_); }
+
+void GlBuffer::write(std::size_t offset, std::span<const std::byte> from) const {
+  glBindBuffer(GL_COPY_WRITE_BUFFER, id_);
+  glBufferSubData(GL_COPY_WRITE_BUFFER, signed_size(offset), signed_size(from.size()), from.data());
+}
+
+void GlBuffer::read(std::size_t offset, std::span<std::byte> to) const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, id_);
+  glGetBufferSubData(GL_COPY_READ_BUFFER, signed_size(offset), signed_size(to.size()), to.data());
+}
+
+void GlBuffer::copy_to(const GlBuffer& to, std::size_t from_offset, std::size_t to_offset,
+                       std::size_t count) const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, id_);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, to.id_);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, signed_size(from_offset),
+                      signed_size(to_offset), signed_size(count));
+}
+
+Result<GlReadBack> GlReadBack::begin(const GlBuffer& from, std::size_t offset, std::size_t bytes) {
+  auto staging = GlBuffer::make(bytes);
+  if (!staging) return tl::unexpected(staging.error());
+  GlReadBack back;
+  back.staging_ = std::move(*staging);
+  from.copy_to(back.staging_, offset, 0, bytes);
+  back.fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+  return back;
+}
+
+GlReadBack::~GlReadBack() {
+  if (fence_) glDeleteSync(static_cast<GLsync>(fence_));
+}
+
+bool GlReadBack::arrived() const {
+  const GLenum state = glClientWaitSync(static_cast<GLsync>(fence_), 0, 0);
+  return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
+}
+
+std::vector<std::byte> GlReadBack::collect() const {
+  constexpr GLuint64 a_second = 1'000'000'000;
+  while (glClientWaitSync(static_cast<GLsync>(fence_), GL_SYNC_FLUSH_COMMANDS_BIT, a_second) ==
+         GL_TIMEOUT_EXPIRED) {
+  }
+  std::vector<std::byte> bytes(staging_.bytes());
+  staging_.read(0, bytes);
+  return bytes;
+}
+
+}  // namespace fude

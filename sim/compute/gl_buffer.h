@@ -1,0 +1,85 @@
+// Storage buffers of compute shaders, and reading them back without waiting. For the thread whose OpenGL
+// context is current.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "signal/result.h"
+
+namespace fude {
+
+// Untyped memory on the card. Offsets and sizes are bytes.
+class GlBuffer {
+ public:
+  GlBuffer() = default;
+  // Zeros. Errors: unsupported, when the card has no room.
+  static Result<GlBuffer> make(std::size_t bytes);
+
+  GlBuffer(GlBuffer&& other) noexcept { swap(other); }
+  GlBuffer& operator=(GlBuffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~GlBuffer();
+
+  std::size_t bytes() const { return bytes_; }
+  unsigned id() const { return id_; }
+
+  // Makes it the shader's `layout(binding = index) buffer`, or uniform block.
+  void bind_storage(unsigned index) const;
+  void bind_uniforms(unsigned index) const;
+
+  void write(std::size_t offset, std::span<const std::byte> from) const;
+  // Waits for the card.
+  void read(std::size_t offset, std::span<std::byte> to) const;
+  void copy_to(const GlBuffer& to, std::size_t from_offset, std::size_t to_offset, std::size_t count) const;
+
+ private:
+  void swap(GlBuffer& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(bytes_, other.bytes_);
+  }
+
+  unsigned id_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+
+// A copy of part of a buffer on its way here. It is taken after all that was asked of the card before it.
+class GlReadBack {
+ public:
+  GlReadBack() = default;
+  // Errors: unsupported, when the card has no room.
+  static Result<GlReadBack> begin(const GlBuffer& from, std::size_t offset, std::size_t bytes);
+
+  GlReadBack(GlReadBack&& other) noexcept { swap(other); }
+  GlReadBack& operator=(GlReadBack&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~GlReadBack();
+
+  // Whether the bytes are here: asks, never waits.
+  bool arrived() const;
+  // The bytes; waits for them where they are still on their way.
+  std::vector<std::byte> collect() const;
+
+ private:
+  void swap(GlReadBack& other) noexcept {
+    std::swap(staging_, other.staging_);
+    std::swap(fence_, other.fence_);
+  }
+
+  GlBuffer staging_;
+  void* fence_ = nullptr;  // GLsync
+};
+
+}  // namespace fude
