@@ -1,6 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+
+#include <CLI/CLI.hpp>
 
 #include "app/commands.h"
 
@@ -19,8 +20,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "fude 0.1.0");
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
+  fude::add_replay(app, status);
   fude::add_import(app, status);
   fude::add_info(app, status);
+  fude::add_bench(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {

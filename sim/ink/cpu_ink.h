@@ -25,6 +25,7 @@ class CpuInk final : public Ink {
   InkTotals totals() const override;
   std::uint64_t steps() const override { return steps_; }
   std::size_t active_cells() const override;
+  CellRect active_rect() const override;
   bool still() const override;
   InkRegion read(const CellRect& rect) const override;
   InkSnapshot snapshot() const override;

@@ -99,6 +99,8 @@ class Ink {
   virtual InkTotals totals() const = 0;
   virtual std::uint64_t steps() const = 0;
   virtual std::size_t active_cells() const = 0;  // of the tiles that are stepped
+  // The smallest rectangle around those tiles, cut to the sheet; no columns where there are none.
+  virtual CellRect active_rect() const = 0;
   virtual bool still() const = 0;                // no water anywhere: a step would change nothing
 
   // rect is cut to the sheet. 24 bytes a cell: read large sheets in strips.

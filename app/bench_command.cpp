@@ -1,0 +1,92 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/painting_options.h"
+#include "rig/bench_pipeline.h"
+#include "sim/brush/bench_brush.h"
+
+namespace fude {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print(const Json& figures, bool json) {
+  if (json) {
+    std::printf("%s\n", figures.dump(2).c_str());
+    return;
+  }
+  for (const auto& [name, value] : figures.items()) std::printf("%-20s %s\n", name.c_str(), value.dump().c_str());
+}
+
+void add_brush(CLI::App& bench, int& status) {
+  struct Options {
+    std::string brush = "round-goat";
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = bench.add_subcommand("brush", "solves of one tuft: press, drag, turn, lift");
+  command->add_option("--brush", options->brush, "a brush of share/brushes, or a TOML file");
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options, &status] {
+    PaintingOptions painting;
+    painting.brush = options->brush;
+    const auto settings = painting.settings();
+    if (!settings) {
+      status = report(settings.error());
+      return;
+    }
+    const BrushBench b = bench_brush(settings->painting.brush);
+    const auto times = [](const BrushBench::Times& t) {
+      return Json{{"median", t.median}, {"p99", t.p99}, {"max", t.max}};
+    };
+    print(Json{{"frames", b.frames},
+               {"us_per_frame", times(b.us_per_frame)},
+               {"us_per_footprint", times(b.us_per_footprint)},
+               {"iterations", {{"median", b.iterations_median}, {"max", b.iterations_max}}},
+               {"unconverged", b.unconverged}},
+          options->json);
+  });
+}
+
+void add_pipeline(CLI::App& bench, int& status) {
+  struct Options {
+    PaintingOptions painting;
+    double seconds = 5;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = bench.add_subcommand("pipeline", "pen event to ink, while 512 x 512 wet cells are stepped");
+  options->painting.add_to(*command);
+  command->add_option("--seconds", options->seconds, "how long")->check(CLI::Range(0.1, 600.0));
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options, &status] {
+    const auto settings = options->painting.settings();
+    const auto b = settings ? bench_pipeline(settings->painting, options->seconds)
+                            : Result<PipelineBench>(tl::unexpected(settings.error()));
+    if (!b) {
+      status = report(b.error());
+      return;
+    }
+    print(Json{{"latency_us", {{"median", b->latency_us.median}, {"p99", b->latency_us.p99}}},
+               {"events", b->events},
+               {"steps", b->steps},
+               {"wet_cells", b->wet_cells}},
+          options->json);
+  });
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  CLI::App* bench = app.add_subcommand("bench", "measures this machine");
+  bench->require_subcommand(1);
+  add_brush(*bench, status);
+  add_pipeline(*bench, status);
+}
+
+}  // namespace fude

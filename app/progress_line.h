@@ -1,0 +1,19 @@
+// Progress of long work: a line on a terminal, nothing in a pipe.
+#pragma once
+
+#include <string>
+
+namespace fude {
+
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string what);
+  ~ProgressLine();
+  void show(double share) const;  // 0 to 1
+
+ private:
+  std::string what_;
+  bool on_terminal_;
+};
+
+}  // namespace fude

@@ -1,0 +1,159 @@
+#include "rig/live_painting.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace fude {
+namespace {
+
+using LiveClock = std::chrono::steady_clock;  // CLOCK_MONOTONIC: the clock of the kernel's stamps
+
+constexpr std::size_t snapshots_kept = 8;
+constexpr std::size_t latencies_kept = 1'000'000;
+constexpr std::chrono::milliseconds between_pictures{16};
+// Reading the paper for the window may take this share of the painting's time.
+constexpr int reading_share = 5;
+// A machine that is further behind than this lets simulated time wait instead of running after it.
+constexpr double patience_s = 0.25;
+
+bool empty(const CellRect& r) { return r.columns <= 0 || r.rows <= 0; }
+
+CellRect united(const CellRect& a, const CellRect& b) {
+  if (empty(a)) return b;
+  if (empty(b)) return a;
+  CellRect r{std::min(a.left, b.left), std::min(a.bottom, b.bottom), 0, 0};
+  r.columns = std::max(a.left + a.columns, b.left + b.columns) - r.left;
+  r.rows = std::max(a.bottom + a.rows, b.bottom + b.rows) - r.bottom;
+  return r;
+}
+
+Timestamp now() { return Timestamp(std::chrono::duration_cast<Duration>(LiveClock::now().time_since_epoch())); }
+
+double milliseconds(Duration d) { return seconds(d) * 1e3; }
+
+}  // namespace
+
+LivePainting::LivePainting(Painting painting, const PenReach& reach, Recorder* recorder)
+    : history_(std::move(painting), snapshots_kept), reach_(reach), recorder_(recorder), thread_([this] { serve(); }) {}
+
+LivePainting::~LivePainting() { stop(); }
+
+void LivePainting::pen(LivePen pen) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.emplace_back(std::move(pen));
+  }
+  wake_.notify_one();
+}
+
+void LivePainting::act(Action action) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.emplace_back(std::move(action));
+  }
+  wake_.notify_one();
+}
+
+void LivePainting::apply(const LiveInput& input) {
+  const Step step = history_.step();
+  if (const auto* action = std::get_if<Action>(&input)) {
+    history_.apply(*action);
+    unshown_ = {0, 0, history_.painting().ink().columns(), history_.painting().ink().rows()};
+    if (recorder_) recorder_->add(RecordedAction{0, *action, step});
+    return;
+  }
+  const auto& pen = std::get<LivePen>(input);
+  history_.apply(brush_move(pen.sample, pen.mapping, reach_));
+  if (recorder_) recorder_->add(RecordedPen{0, pen.device, pen.sample, step});
+  const std::lock_guard lock(mutex_);
+  status_.pen = pen.sample;
+  status_.nib_mm = nib_on_paper(pen.sample, pen.mapping);
+  status_.latency_ms = milliseconds(now() - pen.sample.time.host);
+  if (latencies_ms_.size() < latencies_kept) latencies_ms_.push_back(status_.latency_ms);
+}
+
+void LivePainting::publish() {
+  const Painting& painting = history_.painting();
+  LiveStatus status;
+  status.step = history_.step();
+  status.tuft = painting.brush(PenEnd::tip).shape();
+  status.can_undo = history_.can_undo();
+  status.can_redo = history_.can_redo();
+  {
+    const std::lock_guard lock(mutex_);
+    status.step_ms = status_.step_ms;
+    status.latency_ms = status_.latency_ms;
+    status.pen = status_.pen;
+    status.nib_mm = status_.nib_mm;
+    status_ = std::move(status);
+    if (changes_) return;  // the window has not taken the last ones yet
+  }
+  // What was wet at the last picture may have dried since.
+  const CellRect wet = painting.ink().active_rect();
+  const CellRect cells = united(unshown_, wet);
+  unshown_ = wet;
+  if (empty(cells)) return;
+  InkRegion region = painting.ink().read(cells);
+  const std::lock_guard lock(mutex_);
+  changes_ = std::move(region);
+}
+
+void LivePainting::serve() {
+  const double step_s = history_.painting().step_s();
+  LiveClock::time_point start = LiveClock::now();
+  LiveClock::time_point next_picture = start;
+  std::vector<LiveInput> inputs;
+  while (true) {
+    const auto due = start + std::chrono::duration_cast<LiveClock::duration>(
+                                 std::chrono::duration<double>(static_cast<double>(history_.step() + 1) * step_s));
+    bool stopping = false;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_until(lock, due, [this] { return stopping_ || !queue_.empty(); });
+      stopping = stopping_;
+      std::swap(inputs, queue_);
+    }
+    for (const LiveInput& input : inputs) apply(input);
+    inputs.clear();
+    if (stopping) return;
+
+    const auto before = LiveClock::now();
+    if (before >= due) {
+      history_.advance_to(history_.step() + 1);
+      const auto after = LiveClock::now();
+      const std::lock_guard lock(mutex_);
+      status_.step_ms = std::chrono::duration<double, std::milli>(after - before).count();
+    }
+    const double behind_s = std::chrono::duration<double>(before - due).count();
+    if (behind_s > patience_s) start += before - due;
+    if (before >= next_picture) {
+      publish();
+      next_picture = std::max(before + between_pictures, before + reading_share * (LiveClock::now() - before));
+    }
+  }
+}
+
+LiveStatus LivePainting::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+std::optional<InkRegion> LivePainting::take_changes() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(changes_, std::nullopt);
+}
+
+History& LivePainting::stop() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+  return history_;
+}
+
+}  // namespace fude

@@ -1,0 +1,96 @@
+#include "rig/painting.h"
+
+#include <cmath>
+#include <utility>
+
+namespace fude {
+namespace {
+
+// The time after which the brush learns what the paper took, so that no read-back stalls a frame.
+constexpr double exchange_delay_s = 1.0 / 120;
+
+Duration session_time(Step step, double step_s) {
+  return Duration(static_cast<std::int64_t>(std::llround(static_cast<double>(step) * step_s * 1e9)));
+}
+
+}  // namespace
+
+Result<Painting> Painting::open(const PaintingSetup& setup) {
+  auto ink = open_ink(setup.ink);
+  if (!ink) return tl::unexpected(ink.error());
+  return Painting(setup, std::move(*ink));
+}
+
+Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink) : ink_(std::move(ink)) {
+  brushes_.assign(pen_ends, Brush(setup.brush, setup.seed));
+  LoadBrush load = setup.load;
+  for (Brush& brush : brushes_) {
+    brush.load(load.wetness, load.strength);
+    brush.set_endless(setup.endless);
+    load.strength = {};
+  }
+  exchange_delay_ = static_cast<Step>(std::ceil(exchange_delay_s / ink_->step_s() - 1e-9));
+}
+
+void Painting::advance_to(Step step) {
+  while (step_ < step) {
+    ink_->step();
+    ++step_;
+    for (Exchange& exchange : ink_->collect()) {
+      const auto waiting = unanswered_.find(exchange.event);
+      if (waiting == unanswered_.end()) continue;
+      due_.push_back({step_ - 1 + exchange_delay_, waiting->second, std::move(exchange)});
+      unanswered_.erase(waiting);
+    }
+  }
+}
+
+void Painting::give_back_what_is_due() {
+  while (!due_.empty() && due_.front().at <= step_) {
+    brushes_[static_cast<std::size_t>(due_.front().end)].take(due_.front().exchange);
+    due_.pop_front();
+  }
+}
+
+std::uint64_t Painting::pour(InkEvent event) {
+  event.id = next_event_++;
+  event.at = session_time(step_, step_s());
+  ink_->apply(event);
+  return event.id;
+}
+
+bool Painting::move(PenEnd end, const BrushInput& input) {
+  give_back_what_is_due();
+  BrushFrame frame = brushes_[static_cast<std::size_t>(end)].move(input);
+  ++solves_.solves;
+  solves_.unconverged += !frame.solve.converged;
+  if (!frame.deposit) return false;
+  unanswered_[pour({.what = std::move(*frame.deposit)})] = end;
+  return true;
+}
+
+void Painting::act(const Action& action) {
+  give_back_what_is_due();
+  if (const auto* load = std::get_if<LoadBrush>(&action.what))
+    brushes_[static_cast<std::size_t>(PenEnd::tip)].load(load->wetness, load->strength);
+  if (std::holds_alternative<ReshapeBrush>(action.what))
+    for (Brush& brush : brushes_) brush.reshape();
+  if (std::holds_alternative<DrySheet>(action.what)) pour({.what = DryPaper{}});
+}
+
+PaintingState Painting::save() const {
+  PaintingState state{step_, std::make_shared<const InkSnapshot>(ink_->snapshot()), {}, due_, unanswered_, next_event_};
+  for (const Brush& brush : brushes_) state.brushes.push_back(brush.state());
+  return state;
+}
+
+void Painting::restore(const PaintingState& state) {
+  step_ = state.step;
+  ink_->restore(*state.ink);
+  for (std::size_t i = 0; i < brushes_.size(); ++i) brushes_[i].restore(state.brushes[i]);
+  due_ = state.due;
+  unanswered_ = state.unanswered;
+  next_event_ = state.next_event;
+}
+
+}  // namespace fude

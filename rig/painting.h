@@ -1,0 +1,94 @@
+// A painting: one sheet, the brushes over it and the simulated clock. The same inputs at the same
+// steps give the same picture, live or replayed: everything that happens goes through here.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "capture/session.h"
+#include "signal/action.h"
+#include "signal/brush_input.h"
+#include "signal/result.h"
+#include "sim/brush/brush.h"
+#include "sim/ink/ink.h"
+
+namespace fude {
+
+struct PaintingSetup {
+  BrushSpec brush;
+  InkSetup ink;
+  LoadBrush load{1, {1, 0, 0, 0.1F}};  // what both ends of the pen start with; the rubber end holds water only
+  bool endless = false;                // --ink endless: the brush stays full
+  std::uint64_t seed = 1;
+};
+
+// The two ends of a pen are two brushes: the tip carries ink, the rubber end clear water.
+enum class PenEnd : std::uint8_t { tip, rubber };
+inline constexpr std::size_t pen_ends = 2;
+
+struct SolveCounts {
+  std::int64_t solves = 0;
+  std::int64_t unconverged = 0;
+};
+
+// All of a painting's state between two steps; restoring it is exact.
+struct PaintingState {
+  Step step = 0;
+  std::shared_ptr<const InkSnapshot> ink;
+  std::vector<BrushState> brushes;
+  struct Due {
+    Step at = 0;
+    PenEnd end{};
+    Exchange exchange;
+  };
+  std::deque<Due> due;                                        // answered, not yet applied
+  std::map<std::uint64_t, PenEnd> unanswered;  // who waits for which event's exchange
+  std::uint64_t next_event = 1;
+};
+
+// One thread at a time.
+class Painting {
+ public:
+  static Result<Painting> open(const PaintingSetup& setup);
+
+  double step_s() const { return ink_->step_s(); }
+  Step step() const { return step_; }
+
+  // Steps the ink up to `step`; a step that is past already changes nothing.
+  void advance_to(Step step);
+
+  // One sample of the brush, at the present step. Says whether hair touches the paper.
+  bool move(PenEnd end, const BrushInput& input);
+
+  // Ink from anywhere: the event gets its number and time. Nobody is told what the paper refused.
+  std::uint64_t pour(InkEvent event);
+
+  // Loading, reshaping and drying; Undo and Redo belong to the history.
+  void act(const Action& action);
+
+  PaintingState save() const;
+  void restore(const PaintingState& state);
+
+  Ink& ink() { return *ink_; }
+  const Ink& ink() const { return *ink_; }
+  const Brush& brush(PenEnd end) const { return brushes_[static_cast<std::size_t>(end)]; }
+  const SolveCounts& solves() const { return solves_; }
+
+ private:
+  Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink);
+  void give_back_what_is_due();
+
+  std::unique_ptr<Ink> ink_;
+  std::vector<Brush> brushes_;
+  std::deque<PaintingState::Due> due_;
+  std::map<std::uint64_t, PenEnd> unanswered_;
+  std::uint64_t next_event_ = 1;
+  Step step_ = 0;
+  Step exchange_delay_ = 1;
+  SolveCounts solves_;
+};
+
+}  // namespace fude

@@ -1,0 +1,148 @@
+#include "rig/replay.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <new>
+
+#include "rig/history.h"
+#include "rig/inputs.h"
+#include "rig/session_summary.h"
+
+namespace fude {
+namespace {
+
+using WallClock = std::chrono::steady_clock;  // for the report only: nothing simulated depends on it
+
+constexpr double longest_settling_s = 3600;
+constexpr std::size_t snapshots_kept = 8;
+
+double since(WallClock::time_point start) { return std::chrono::duration<double>(WallClock::now() - start).count(); }
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+}
+
+void count_samples(const Session& session, ReplayReport& report) {
+  std::map<DeviceNumber, bool> touching;
+  for (const RecordedPen& pen : session.pens) {
+    report.samples += counts_as_sample(pen.sample);
+    report.lost_samples += pen.sample.after_gap;
+    bool& touches = touching[pen.device];
+    const bool now = pen.sample.in_proximity && pen.sample.in_contact;
+    report.strokes += now && !touches;
+    touches = now;
+  }
+  for (const Receipt& receipt : session.receipts) report.lost_samples += receipt.dropped;
+  const SessionSpan span = span_of(session);
+  report.session_s = seconds(span.last - span.first);
+}
+
+bool undoes(const Session& session) {
+  return std::any_of(session.actions.begin(), session.actions.end(), [](const RecordedAction& a) {
+    return std::holds_alternative<Undo>(a.action.what) || std::holds_alternative<Redo>(a.action.what);
+  });
+}
+
+// Steps one by one so that each can be timed.
+class Stopwatch {
+ public:
+  void advance(History& history, Step to) {
+    while (history.step() < to) {
+      const auto start = WallClock::now();
+      history.advance_to(history.step() + 1);
+      step_ms.push_back(since(start) * 1e3);
+    }
+  }
+  void apply(History& history, const PaintingInput& input) {
+    const auto start = WallClock::now();
+    history.apply(input);
+    if (std::holds_alternative<BrushMove>(input)) solve_us.push_back(since(start) * 1e6);
+  }
+  std::vector<double> step_ms;
+  std::vector<double> solve_us;
+};
+
+}  // namespace
+
+Quantiles quantiles(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  };
+  return {at(0.5), at(0.99)};
+}
+
+PenReach reach_of(const BrushSpec& brush) { return {.tuft_length = Millimetres(brush.tuft_length_mm)}; }
+
+Picture picture_of(const Ink& ink, const Palette& palette) {
+  const int columns = ink.columns();
+  const int rows = ink.rows();
+  Picture picture(columns, rows);
+  for (int y = 0; y < rows; ++y) {
+    const InkRegion row = ink.read({0, y, columns, 1});
+    colour_row(row.pigment, palette, picture.row(rows - 1 - y));
+  }
+  return picture;
+}
+
+Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
+                        const std::function<void(double)>& progress) try {
+  auto plan = plan_sheet(session, settings.wish);
+  if (!plan) return tl::unexpected(plan.error());
+  PaintingSetup setup = settings.painting;
+  setup.ink.width_mm = plan->sheet.width.value;
+  setup.ink.height_mm = plan->sheet.height.value;
+  auto painting = Painting::open(setup);
+  if (!painting) return tl::unexpected(painting.error());
+  History history(std::move(*painting), undoes(session) ? snapshots_kept : 0);
+
+  const auto start = WallClock::now();
+  auto told = start;
+  Replayed result;
+  ReplayReport& report = result.report;
+  report.dt_s = history.painting().step_s();
+  const std::vector<TimedInput> inputs = inputs_of(session, *plan, settings.reach, report.dt_s);
+  Stopwatch stopwatch;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    stopwatch.advance(history, inputs[i].step);
+    stopwatch.apply(history, inputs[i].input);
+    if (since(told) > 0.2) {
+      told = WallClock::now();
+      progress(static_cast<double>(i) / static_cast<double>(inputs.size()));
+    }
+  }
+  const double settle_s = settings.settle.until_dry ? longest_settling_s : settings.settle.seconds;
+  const Step end = history.step() + 1 + static_cast<Step>(std::ceil(settle_s / report.dt_s));
+  while (history.step() < end) {
+    stopwatch.advance(history, history.step() + 1);
+    if (settings.settle.until_dry && history.painting().ink().still()) break;
+  }
+  progress(1);
+
+  const Ink& ink = history.painting().ink();
+  report.wall_s = since(start);
+  report.steps = history.step();
+  count_samples(session, report);
+  report.step_ms = quantiles(std::move(stopwatch.step_ms));
+  report.us_per_solve = quantiles(std::move(stopwatch.solve_us));
+  report.solves = history.painting().solves();
+  report.ink = ink.totals();
+  report.backend = setup.ink.backend == InkBackend::gl ? "gl" : "cpu";
+  report.isa = setup.ink.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.ink.instruction_set));
+  report.threads = setup.ink.threads;
+  for (const Pigment& pigment : settings.palette.pigments) report.pigments.emplace_back(pigment.name);
+  result.picture = picture_of(ink, settings.palette);
+  report.picture_sha256 = picture_sha256(result.picture);
+  report.peak_mb = peak_megabytes();
+  return result;
+} catch (const std::bad_alloc&) {
+  return failure(Fault::storage, "not enough memory for this sheet; give a smaller --size-mm or a larger --cell-mm");
+}
+
+}  // namespace fude

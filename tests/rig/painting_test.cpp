@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include "rig/inputs.h"
+#include "rig/live_painting.h"
+#include "rig/replay.h"
+#include "tests/rig/gesture.h"
+
+namespace fude {
+namespace {
+
+ReplaySettings settings(int threads = 1) {
+  ReplaySettings s;
+  s.painting.ink.cell_mm = 0.2;
+  s.painting.ink.threads = threads;
+  s.reach = reach_of(s.painting.brush);
+  s.palette.pigments = {pigments()[0]};
+  return s;
+}
+
+ReplayReport painted(const Session& session, const ReplaySettings& s) {
+  return replay(session, s, [](double) {}).value().report;
+}
+
+double total_deposit(const ReplayReport& r) { return r.ink.pigment_deposited[0]; }
+
+TEST(Replay, AStrokeLeavesInkAndIsCounted) {
+  const ReplayReport r = painted(gesture::session(200, 2), settings());
+  EXPECT_EQ(r.strokes, 2);
+  EXPECT_EQ(r.samples, static_cast<std::int64_t>(gesture::session(200, 2).pens.size()));
+  EXPECT_GT(total_deposit(r), 0.1);
+  EXPECT_EQ(r.solves.unconverged, 0);
+  EXPECT_NEAR(r.dt_s, 4.0 / 120, 1e-12);
+}
+
+TEST(Replay, WhatWasDepositedIsAccountedFor) {
+  ReplaySettings s = settings();
+  s.settle.seconds = 2;
+  const ReplayReport r = painted(gesture::session(200, 3), s);
+  const InkTotals& ink = r.ink;
+  EXPECT_NEAR(ink.pigment_deposited[0],
+              ink.pigment_surface[0] + ink.pigment_flow[0] + ink.pigment_fixed[0],
+              1e-4 * ink.pigment_deposited[0]);
+  EXPECT_NEAR(ink.water_deposited, ink.water_evaporated + ink.water_left, 1e-4 * ink.water_deposited);
+  EXPECT_GT(ink.water_evaporated, 0);
+}
+
+TEST(Replay, ThreadsDoNotChangeThePicture) {
+  const Session session = gesture::session(150, 2);
+  EXPECT_EQ(painted(session, settings(1)).picture_sha256, painted(session, settings(2)).picture_sha256);
+}
+
+TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {
+  const double slow = total_deposit(painted(gesture::session(100, 1), settings()));
+  const double middle = total_deposit(painted(gesture::session(250, 1), settings()));
+  const double fast = total_deposit(painted(gesture::session(1000, 1), settings()));
+  EXPECT_NEAR(slow, fast, 0.02 * fast);
+  EXPECT_NEAR(middle, fast, 0.02 * fast);
+}
+
+TEST(Replay, PressureWithoutContactPaintsNothing) {
+  Session session = gesture::session(200, 1);
+  for (RecordedPen& pen : session.pens) pen.sample.in_contact = false;
+  const ReplayReport r = painted(session, settings());
+  EXPECT_EQ(total_deposit(r), 0);
+  EXPECT_EQ(r.strokes, 0);
+}
+
+TEST(Replay, DryingEndsWhenAllWaterIsGone) {
+  ReplaySettings s = settings();
+  s.settle.until_dry = true;
+  const ReplayReport r = painted(gesture::session(200, 1), s);
+  EXPECT_EQ(r.ink.water_left, 0);
+  EXPECT_EQ(r.ink.pigment_flow[0], 0);
+  EXPECT_NEAR(r.ink.pigment_fixed[0], total_deposit(r), 1e-4 * total_deposit(r));
+}
+
+TEST(Replay, TheRubberEndCarriesClearWater) {
+  Session session = gesture::session(200, 1);
+  for (RecordedPen& pen : session.pens) pen.sample.tool = PenTool::rubber;
+  const ReplayReport r = painted(session, settings());
+  EXPECT_GT(r.ink.water_deposited, 0);
+  EXPECT_EQ(total_deposit(r), 0);
+}
+
+History fresh(std::size_t kept) {
+  PaintingSetup setup = settings().painting;
+  setup.ink.width_mm = setup.ink.height_mm = gesture::sheet_mm;
+  return History(Painting::open(setup).value(), kept);
+}
+
+std::vector<TimedInput> inputs(const Session& session) {
+  return inputs_of(session, plan_sheet(session, {}).value(), settings().reach, 4.0 / 120);
+}
+
+void run(History& history, const std::vector<TimedInput>& all) {
+  for (const TimedInput& input : all) {
+    history.advance_to(input.step);
+    history.apply(input.input);
+  }
+}
+
+TEST(Undo, GivesThePaintingAsItWasBeforeTheStroke) {
+  History once = fresh(8);
+  run(once, inputs(gesture::session(200, 1)));
+  once.advance_to(once.step() + 4);  // the second stroke below begins here
+
+  for (const std::size_t kept : {std::size_t{0}, std::size_t{1}, std::size_t{8}}) {
+    History twice = fresh(kept);
+    run(twice, inputs(gesture::session(200, 2)));
+    const Step reached = twice.step();
+    const Step second = [&] {
+      for (const TimedInput& input : inputs(gesture::session(200, 2)))
+        if (const auto* m = std::get_if<BrushMove>(&input.input);
+            m && m->input.in_contact && input.step > once.step() - 8)
+          return input.step;
+      return Step{0};
+    }();
+    twice.apply(Action{{}, Undo{}});
+    EXPECT_EQ(twice.step(), reached);  // the session's clock goes on
+    History until = fresh(8);
+    auto first = inputs(gesture::session(200, 2));
+    std::erase_if(first, [&](const TimedInput& i) { return i.step > second; });
+    while (!first.empty() && std::get<BrushMove>(first.back().input).input.in_contact) first.pop_back();
+    run(until, first);
+    until.advance_to(second);
+    EXPECT_EQ(twice.painting().ink().hash(), until.painting().ink().hash()) << kept << " snapshots kept";
+  }
+}
+
+TEST(Undo, AndRedoGiveThePictureBack) {
+  History history = fresh(4);
+  run(history, inputs(gesture::session(200, 2)));
+  const std::uint64_t before = history.painting().ink().hash();
+  EXPECT_TRUE(history.can_undo());
+  history.apply(Action{{}, Undo{}});
+  EXPECT_NE(history.painting().ink().hash(), before);
+  EXPECT_TRUE(history.can_redo());
+  history.apply(Action{{}, Redo{}});
+  EXPECT_EQ(history.painting().ink().hash(), before);
+  EXPECT_FALSE(history.can_redo());
+}
+
+TEST(Undo, OfEverythingLeavesABlankSheet) {
+  History history = fresh(1);
+  run(history, inputs(gesture::session(200, 3)));
+  while (history.can_undo()) history.apply(Action{{}, Undo{}});
+  EXPECT_EQ(history.painting().ink().totals().pigment_deposited[0], 0);
+  history.apply(Action{{}, Undo{}});  // nothing left: nothing happens
+}
+
+TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
+  const auto path = std::filesystem::temp_directory_path() / ("fude-live-" + std::to_string(getpid()) + ".fude");
+  std::filesystem::remove(path);
+  const Session script = gesture::session(200, 2);
+  const SheetPlan plan = plan_sheet(script, {}).value();
+  ReplaySettings s = settings(2);
+  PaintingSetup setup = s.painting;
+  setup.ink.width_mm = plan.sheet.width.value;
+  setup.ink.height_mm = plan.sheet.height.value;
+
+  std::string live_picture;
+  {
+    auto recorder = Recorder::open(path).value();
+    recorder->add(script.devices[0].description);
+    LivePainting live(Painting::open(setup).value(), s.reach, recorder.get());
+    for (const RecordedPen& pen : script.pens) {
+      live.pen({1, pen.sample, plan.mappings.at(1)});
+      if (pen.order == 90) live.act({pen.sample.time.host, LoadBrush{0.6F, {0.5F, 0, 0, 0}}});
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    live.act({{}, Undo{}});
+    live.act({{}, Redo{}});
+    History& history = live.stop();
+    history.advance_to(history.step() + 1);
+    live_picture = picture_sha256(picture_of(history.painting().ink(), s.palette));
+    ASSERT_TRUE(recorder->close());
+  }
+  const Session recorded = read_session(path).value();
+  EXPECT_EQ(recorded.pens.size(), script.pens.size());
+  EXPECT_EQ(painted(recorded, s).picture_sha256, live_picture);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace fude
