@@ -1,9 +1,8 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <string>
-
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "app/commands.h"
 #include "app/painting_options.h"
@@ -20,7 +19,8 @@ void print(const Json& figures, bool json) {
     std::printf("%s\n", figures.dump(2).c_str());
     return;
   }
-  for (const auto& [name, value] : figures.items()) std::printf("%-20s %s\n", name.c_str(), value.dump().c_str());
+  for (const auto& [name, value] : figures.items())
+    std::printf("%-20s %s\n", name.c_str(), value.dump().c_str());
 }
 
 void add_brush(CLI::App& bench, int& status) {
@@ -60,7 +60,8 @@ void add_pipeline(CLI::App& bench, int& status) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = bench.add_subcommand("pipeline", "pen event to ink, while 512 x 512 wet cells are stepped");
+  CLI::App* command =
+      bench.add_subcommand("pipeline", "pen event to ink, while 512 x 512 wet cells are stepped");
   options->painting.add_to(*command);
   command->add_option("--seconds", options->seconds, "how long")->check(CLI::Range(0.1, 600.0));
   command->add_flag("--json", options->json, "as JSON");

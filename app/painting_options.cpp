@@ -1,10 +1,9 @@
 #include "app/painting_options.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <thread>
-
-#include <CLI/CLI.hpp>
 
 #include "rig/share_folder.h"
 #include "sim/brush/brush_spec.h"
@@ -35,7 +34,8 @@ Result<Extent> parse_extent(const std::string& text, const std::string& option) 
   if (cross != std::string::npos) {
     const auto width = number(std::string_view(text).substr(0, cross));
     const auto height = number(std::string_view(text).substr(cross + 1));
-    if (width && height && *width > 0 && *height > 0) return Extent{Millimetres(*width), Millimetres(*height)};
+    if (width && height && *width > 0 && *height > 0)
+      return Extent{Millimetres(*width), Millimetres(*height)};
   }
   return failure(Fault::usage, option + " takes WxH in millimetres, as 210x297; '" + text + "' is not");
 }
@@ -46,7 +46,8 @@ void PaintingOptions::add_to(CLI::App& command) {
   command.add_option("--size-mm", size_mm, "the sheet, WxH; default: the tablet's active area");
   command.add_option("--tablet-mm", tablet_mm, "active area of a tablet that does not say it, WxH");
   command.add_option("--cell-mm", cell_mm, "cell of the paper, one pixel of the picture");
-  command.add_option("--ink", ink, "endless: the brush stays full")->check(CLI::IsMember({"normal", "endless"}));
+  command.add_option("--ink", ink, "endless: the brush stays full")
+      ->check(CLI::IsMember({"normal", "endless"}));
   command.add_option("--flow", flow, "off: strokes are laid down dry")->check(CLI::IsMember({"on", "off"}));
   command.add_option("--settle", settle, "seconds to go on after the last input, or 'dry'");
   command.add_option("--backend", backend, "what runs the ink")->check(CLI::IsMember({"cpu", "gl", "auto"}));

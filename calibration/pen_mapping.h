@@ -44,7 +44,7 @@ Result<TabletMapping> mapping_for(const DeviceDescription& device, Extent sheet)
 // a pen that does not touch holds it `clearance` further off than an unbent tuft reaches.
 struct PenReach {
   Millimetres tuft_length;
-  Fraction deepest{0.5};
+  Fraction deepest{0.3};
   double exponent = 0.8;
   Millimetres clearance{2};
 };

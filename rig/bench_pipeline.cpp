@@ -60,7 +60,8 @@ Result<PipelineBench> bench_pipeline(const PaintingSetup& wanted, double seconds
   for (int i = 0; i < reports; ++i) {
     due += between_reports;
     std::this_thread::sleep_until(due);
-    PenSample pen = circling(i * std::chrono::duration<double>(between_reports).count(), side_mm, mapping.mm_per_count_x);
+    PenSample pen =
+        circling(i * std::chrono::duration<double>(between_reports).count(), side_mm, mapping.mm_per_count_x);
     pen.time.host = Timestamp(std::chrono::duration_cast<Duration>(Clock::now().time_since_epoch()));
     pen.time.stamped_by = StampedBy::arrival;
     live.pen({1, pen, mapping});

@@ -15,9 +15,12 @@ void History::mark() {
   marks_.push_back({log_.size(), painting_.step(), std::nullopt});
   if (snapshots_kept_ == 0) return;
   marks_.back().state = painting_.save();
-  const auto kept = std::count_if(marks_.begin(), marks_.end(), [](const Mark& m) { return m.state.has_value(); });
+  const auto kept =
+      std::count_if(marks_.begin(), marks_.end(), [](const Mark& m) { return m.state.has_value(); });
   if (static_cast<std::size_t>(kept) > snapshots_kept_)
-    std::find_if(marks_.begin(), marks_.end(), [](const Mark& m) { return m.state.has_value(); })->state.reset();
+    std::find_if(marks_.begin(), marks_.end(), [](const Mark& m) {
+      return m.state.has_value();
+    })->state.reset();
 }
 
 void History::run(const Logged& logged) {
@@ -72,7 +75,8 @@ void History::redo() {
   const Undone again = std::move(rest.back());
   rest.pop_back();
   // The paper may have aged since the undo: what is brought back follows at its old distances.
-  const Step later = again.inputs.empty() ? 0 : std::max<Step>(0, painting_.step() - again.inputs.front().step);
+  const Step later =
+      again.inputs.empty() ? 0 : std::max<Step>(0, painting_.step() - again.inputs.front().step);
   mark();
   undone_ = std::move(rest);
   for (Logged logged : again.inputs) {

@@ -16,7 +16,8 @@ struct TimedInput {
 
 // Inputs that were applied live keep their step; the others get the step their time falls in. Steps
 // never go back: time that stands still or runs backwards is applied at the step reached.
-std::vector<TimedInput> inputs_of(const Session& session, const SheetPlan& plan, const PenReach& reach, double step_s);
+std::vector<TimedInput> inputs_of(const Session& session, const SheetPlan& plan, const PenReach& reach,
+                                  double step_s);
 
 // The pen sample as the painting takes it.
 BrushMove brush_move(const PenSample& pen, const TabletMapping& mapping, const PenReach& reach);

@@ -28,14 +28,19 @@ CellRect united(const CellRect& a, const CellRect& b) {
   return r;
 }
 
-Timestamp now() { return Timestamp(std::chrono::duration_cast<Duration>(LiveClock::now().time_since_epoch())); }
+Timestamp now() {
+  return Timestamp(std::chrono::duration_cast<Duration>(LiveClock::now().time_since_epoch()));
+}
 
 double milliseconds(Duration d) { return seconds(d) * 1e3; }
 
 }  // namespace
 
 LivePainting::LivePainting(Painting painting, const PenReach& reach, Recorder* recorder)
-    : history_(std::move(painting), snapshots_kept), reach_(reach), recorder_(recorder), thread_([this] { serve(); }) {}
+    : history_(std::move(painting), snapshots_kept),
+      reach_(reach),
+      recorder_(recorder),
+      thread_([this] { serve(); }) {}
 
 LivePainting::~LivePainting() { stop(); }
 
@@ -105,8 +110,8 @@ void LivePainting::serve() {
   LiveClock::time_point next_picture = start;
   std::vector<LiveInput> inputs;
   while (true) {
-    const auto due = start + std::chrono::duration_cast<LiveClock::duration>(
-                                 std::chrono::duration<double>(static_cast<double>(history_.step() + 1) * step_s));
+    const auto due = start + std::chrono::duration_cast<LiveClock::duration>(std::chrono::duration<double>(
+                                 static_cast<double>(history_.step() + 1) * step_s));
     bool stopping = false;
     {
       std::unique_lock lock(mutex_);
@@ -129,7 +134,8 @@ void LivePainting::serve() {
     if (behind_s > patience_s) start += before - due;
     if (before >= next_picture) {
       publish();
-      next_picture = std::max(before + between_pictures, before + reading_share * (LiveClock::now() - before));
+      next_picture =
+          std::max(before + between_pictures, before + reading_share * (LiveClock::now() - before));
     }
   }
 }

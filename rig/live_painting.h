@@ -28,8 +28,8 @@ struct LivePen {
 // What the window shows besides the paper.
 struct LiveStatus {
   Step step = 0;
-  double step_ms = 0;      // of the last ink step
-  double latency_ms = 0;   // last sample: from its stamp until the ink can read its deposit
+  double step_ms = 0;     // of the last ink step
+  double latency_ms = 0;  // last sample: from its stamp until the ink can read its deposit
   PenSample pen;
   Eigen::Vector2d nib_mm = Eigen::Vector2d::Zero();
   TuftShape tuft;

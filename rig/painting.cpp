@@ -79,7 +79,8 @@ void Painting::act(const Action& action) {
 }
 
 PaintingState Painting::save() const {
-  PaintingState state{step_, std::make_shared<const InkSnapshot>(ink_->snapshot()), {}, due_, unanswered_, next_event_};
+  PaintingState state{
+      step_, std::make_shared<const InkSnapshot>(ink_->snapshot()), {}, due_, unanswered_, next_event_};
   for (const Brush& brush : brushes_) state.brushes.push_back(brush.state());
   return state;
 }

@@ -20,8 +20,9 @@ namespace fude {
 struct PaintingSetup {
   BrushSpec brush;
   InkSetup ink;
-  LoadBrush load{1, {1, 0, 0, 0.1F}};  // what both ends of the pen start with; the rubber end holds water only
-  bool endless = false;                // --ink endless: the brush stays full
+  LoadBrush load{1,
+                 {1, 0, 0, 0.1F}};  // what both ends of the pen start with; the rubber end holds water only
+  bool endless = false;             // --ink endless: the brush stays full
   std::uint64_t seed = 1;
 };
 
@@ -44,7 +45,7 @@ struct PaintingState {
     PenEnd end{};
     Exchange exchange;
   };
-  std::deque<Due> due;                                        // answered, not yet applied
+  std::deque<Due> due;                         // answered, not yet applied
   std::map<std::uint64_t, PenEnd> unanswered;  // who waits for which event's exchange
   std::uint64_t next_event = 1;
 };

@@ -19,7 +19,9 @@ using WallClock = std::chrono::steady_clock;  // for the report only: nothing si
 constexpr double longest_settling_s = 3600;
 constexpr std::size_t snapshots_kept = 8;
 
-double since(WallClock::time_point start) { return std::chrono::duration<double>(WallClock::now() - start).count(); }
+double since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
 
 double peak_megabytes() {
   rusage usage{};
@@ -134,7 +136,8 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
   report.solves = history.painting().solves();
   report.ink = ink.totals();
   report.backend = setup.ink.backend == InkBackend::gl ? "gl" : "cpu";
-  report.isa = setup.ink.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.ink.instruction_set));
+  report.isa =
+      setup.ink.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.ink.instruction_set));
   report.threads = setup.ink.threads;
   for (const Pigment& pigment : settings.palette.pigments) report.pigments.emplace_back(pigment.name);
   result.picture = picture_of(ink, settings.palette);
@@ -142,7 +145,8 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
   report.peak_mb = peak_megabytes();
   return result;
 } catch (const std::bad_alloc&) {
-  return failure(Fault::storage, "not enough memory for this sheet; give a smaller --size-mm or a larger --cell-mm");
+  return failure(Fault::storage,
+                 "not enough memory for this sheet; give a smaller --size-mm or a larger --cell-mm");
 }
 
 }  // namespace fude

@@ -96,8 +96,10 @@ std::vector<TouchedCell> touched_cells(const Deposit& deposit, double cell_mm, i
   if (size == 0 || map.fresh.size() != size || map.contact_s.size() != size || map.patch.size() != size ||
       !(map.cell_mm > 0))
     return {};
-  const Overlap across = overlap(map.left_mm, map.columns * map.cell_mm, cell_mm, columns);
-  const Overlap up = overlap(map.bottom_mm, map.rows * map.cell_mm, cell_mm, rows);
+  // A little wider than the map: the edges of its last cells are rounded otherwise than its own.
+  const double rim = 1e-6 * cell_mm;
+  const Overlap across = overlap(map.left_mm - rim, map.columns * map.cell_mm + 2 * rim, cell_mm, columns);
+  const Overlap up = overlap(map.bottom_mm - rim, map.rows * map.cell_mm + 2 * rim, cell_mm, rows);
   if (across.last < across.first || up.last < up.first) return {};
 
   const auto for_each_piece = [&](const auto& take) {

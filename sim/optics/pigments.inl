@@ -1,7 +1,7 @@
 // FUDE_PIGMENT(name, K red, K green, K blue, S red, S green, S blue): of the unit layer of pigment.h.
 // Chinese ink is soot in glue: it absorbs all but evenly, blue a little more (it dries warm), and hardly
-// scatters. Ours: one unit layer leaves a twentieth of the light.
-FUDE_PIGMENT("sumi", 1.50, 1.56, 1.66, 0.012, 0.011, 0.010)
+// scatters. Ours: one unit layer is black, a tenth of one a middle grey.
+FUDE_PIGMENT("sumi", 5.00, 5.20, 5.53, 0.040, 0.037, 0.033)
 // Curtis et al. 1997, figure 5, at second hand: as several independent implementations give them.
 FUDE_PIGMENT("quinacridone-rose", 0.22, 1.47, 0.57, 0.05, 0.003, 0.03)
 FUDE_PIGMENT("indian-red", 0.46, 1.07, 1.50, 1.28, 0.38, 0.21)

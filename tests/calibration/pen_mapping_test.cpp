@@ -97,10 +97,10 @@ TEST(PenMapping, PressureLowersTheRootAlongTheAxisByTheStatedCurve) {
   const Eigen::Vector3d nib(100, 50, 0);
   EXPECT_NEAR((brush_input(p, m, reach).paper_from_handle.translation - nib).norm(), 30, tiny);
   p.pressure = Fraction(1);
-  EXPECT_NEAR((brush_input(p, m, reach).paper_from_handle.translation - nib).norm(), 15, tiny);
+  EXPECT_NEAR((brush_input(p, m, reach).paper_from_handle.translation - nib).norm(), 21, tiny);
   p.pressure = Fraction(0.25);
   EXPECT_NEAR((brush_input(p, m, reach).paper_from_handle.translation - nib).norm(),
-              30 * (1 - 0.5 * 0.32987697769322355), tiny);
+              30 * (1 - 0.3 * 0.32987697769322355), tiny);
 }
 
 TEST(PenMapping, APenThatDoesNotTouchKeepsTheTipClear) {

@@ -37,8 +37,7 @@ TEST(Replay, WhatWasDepositedIsAccountedFor) {
   s.settle.seconds = 2;
   const ReplayReport r = painted(gesture::session(200, 3), s);
   const InkTotals& ink = r.ink;
-  EXPECT_NEAR(ink.pigment_deposited[0],
-              ink.pigment_surface[0] + ink.pigment_flow[0] + ink.pigment_fixed[0],
+  EXPECT_NEAR(ink.pigment_deposited[0], ink.pigment_surface[0] + ink.pigment_flow[0] + ink.pigment_fixed[0],
               1e-4 * ink.pigment_deposited[0]);
   EXPECT_NEAR(ink.water_deposited, ink.water_evaporated + ink.water_left, 1e-4 * ink.water_deposited);
   EXPECT_GT(ink.water_evaporated, 0);
@@ -149,7 +148,8 @@ TEST(Undo, OfEverythingLeavesABlankSheet) {
 }
 
 TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
-  const auto path = std::filesystem::temp_directory_path() / ("fude-live-" + std::to_string(getpid()) + ".fude");
+  const auto path =
+      std::filesystem::temp_directory_path() / ("fude-live-" + std::to_string(getpid()) + ".fude");
   std::filesystem::remove(path);
   const Session script = gesture::session(200, 2);
   const SheetPlan plan = plan_sheet(script, {}).value();
