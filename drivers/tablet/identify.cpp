@@ -97,17 +97,20 @@ std::optional<Size> active_area(const DeviceDescription& device, const AxisRange
 }  // namespace
 
 bool is_pen_tablet(const DeviceDescription& device) {
-  if (!usable(find_axis(device, ABS_X)) || !usable(find_axis(device, ABS_Y))) return false;
+  if (find_axis(device, ABS_X) == nullptr || find_axis(device, ABS_Y) == nullptr) return false;
   for (std::uint16_t key : pen_tool_keys)
     if (has_key(device, key)) return true;
   const bool fingers = has_key(device, BTN_TOOL_FINGER) || find_axis(device, ABS_MT_POSITION_X) != nullptr;
-  return !fingers && usable(find_axis(device, ABS_PRESSURE)) && has_key(device, BTN_TOUCH);
+  return !fingers && find_axis(device, ABS_PRESSURE) != nullptr && has_key(device, BTN_TOUCH);
 }
 
 DeviceDescription identified(DeviceDescription device) {
   if (!is_pen_tablet(device)) return device;
   device.kind = DeviceKind::pen_tablet;
-  if (const auto size = active_area(device, *find_axis(device, ABS_X), *find_axis(device, ABS_Y))) {
+  const AxisRange& x = *find_axis(device, ABS_X);
+  const AxisRange& y = *find_axis(device, ABS_Y);
+  if (!usable(&x) || !usable(&y)) return device;
+  if (const auto size = active_area(device, x, y)) {
     device.width = size->width;
     device.height = size->height;
   }
@@ -115,7 +118,7 @@ DeviceDescription identified(DeviceDescription device) {
 }
 
 std::vector<std::string> capabilities(const DeviceDescription& device) {
-  const auto axis = [&](std::uint16_t code) { return usable(find_axis(device, code)); };
+  const auto axis = [&](std::uint16_t code) { return find_axis(device, code) != nullptr; };
   const bool pen = is_pen_tablet(device);
   const std::pair<bool, const char*> all[] = {
       {axis(ABS_X), "x"},
