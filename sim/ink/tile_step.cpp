@@ -16,8 +16,8 @@ namespace {
 #include "sim/ink/kernels/dry.k"
 // clang-format on
 
-// What the cells of a row show their neighbours. Three rows are kept while a block is swept from below;
-// they stay in the first-level cache, and what a site derives from its state is derived once.
+// What the cells of a row show their neighbours, derived once. Two rows are kept while a block is swept from
+// below, and the links of two rows; they stay in the first-level cache.
 enum Shown : int {
   shown_e,
   shown_n,
@@ -27,60 +27,143 @@ enum Shown : int {
   shown_nw,
   shown_sw,
   shown_se,
-  shown_populations,
-  shown_blocking = shown_populations,
-  shown_grain,
-  shown_toe,
+  shown_blocking,
   shown_water,
   shown_per_water,
   shown_concentration,
-  shown_hold = shown_concentration + 4,
+  shown_head = shown_concentration + 4,
+  shown_diagonal_head,
   shown_toes,
+  shown_barrier,
+  shown_toe,
   shown_fields
 };
+
+// The links of a row of cells to the east and upwards, six floats each.
+enum Linked : int { linked_water, linked_mass, linked_edge = linked_mass + 4 };
+constexpr int linked_fields = 6;
+enum Side : int { side_e, side_n, side_ne, side_nw };
+constexpr int sides = 4;
+
+constexpr int link_at(Side side, int pitch) { return static_cast<int>(side) * linked_fields * pitch; }
 
 template <int block_width>
 struct Rows {
   static constexpr int width = block_width;
   static constexpr int margin = 16;  // column 0 on a cache line, and one cell beyond either end
   static constexpr int pitch = width + 2 * margin;
-  alignas(64) float cell[3][shown_fields * pitch];
+  alignas(64) float shown[3][shown_fields * pitch];
+  alignas(64) float linked[2][sides * linked_fields * pitch];
 
-  float* row(int y) { return cell[(y + 3) % 3] + margin; }
+  float* shown_row(int y) { return shown[(y + 3) % 3] + margin; }
+  float* linked_row(int y) { return linked[(y + 2) % 2] + margin; }
 };
 
-// The rows below, at and above a cell.
+// The rows below, at and above a cell, and the links of those below and at it.
 template <int row_pitch>
 struct Surroundings {
   static constexpr int pitch = row_pitch;
-  const float* row[3];
+  const float* shown[3];
+  const float* linked[2];
 };
 
 template <class Around>
 FUNCTION float shown(const Around& rows, int field, int x, int dx, int dy) {
-  return rows.row[1 + dy][field * Around::pitch + x + dx];
+  return rows.shown[1 + dy][field * Around::pitch + x + dx];
 }
 
 template <class Around>
 FUNCTION Site shown_site(const Around& rows, int x, int dx, int dy) {
-  return {shown(rows, shown_water, x, dx, dy),
-          shown(rows, shown_per_water, x, dx, dy),
-          {shown(rows, shown_concentration, x, dx, dy), shown(rows, shown_concentration + 1, x, dx, dy),
-           shown(rows, shown_concentration + 2, x, dx, dy), shown(rows, shown_concentration + 3, x, dx, dy)},
-          shown(rows, shown_blocking, x, dx, dy),
-          shown(rows, shown_hold, x, dx, dy),
-          shown(rows, shown_toes, x, dx, dy)};
+  Site site;
+  site.water = shown(rows, shown_water, x, dx, dy);
+  site.per_water = shown(rows, shown_per_water, x, dx, dy);
+  site.concentration = {
+      shown(rows, shown_concentration, x, dx, dy), shown(rows, shown_concentration + 1, x, dx, dy),
+      shown(rows, shown_concentration + 2, x, dx, dy), shown(rows, shown_concentration + 3, x, dx, dy)};
+  site.blocking = shown(rows, shown_blocking, x, dx, dy);
+  site.head = shown(rows, shown_head, x, dx, dy);
+  site.diagonal_head = shown(rows, shown_diagonal_head, x, dx, dy);
+  site.toes = shown(rows, shown_toes, x, dx, dy);
+  site.barrier = shown(rows, shown_barrier, x, dx, dy);
+  site.toe = shown(rows, shown_toe, x, dx, dy);
+  return site;
+}
+
+template <class Around>
+FUNCTION Crossing linked(const Around& rows, Side side, int x, int dx, int dy) {
+  const float* c = rows.linked[1 + dy] + link_at(side, Around::pitch) + x + dx;
+  constexpr int pitch = Around::pitch;
+  return {c[linked_water * pitch],
+          {c[linked_mass * pitch], c[(linked_mass + 1) * pitch], c[(linked_mass + 2) * pitch],
+           c[(linked_mass + 3) * pitch]},
+          c[linked_edge * pitch]};
+}
+
+template <int pitch>
+FUNCTION void put_link(float* row, Side side, int x, const Crossing& crossing) {
+  float* c = row + link_at(side, pitch) + x;
+  c[linked_water * pitch] = crossing.water;
+  c[linked_mass * pitch] = crossing.mass.x;
+  c[(linked_mass + 1) * pitch] = crossing.mass.y;
+  c[(linked_mass + 2) * pitch] = crossing.mass.z;
+  c[(linked_mass + 3) * pitch] = crossing.mass.w;
+  c[linked_edge * pitch] = crossing.edge;
 }
 
 #define CELL_PARAMETERS , const auto &rows, int x
-#define SITE(dx, dy) shown_site(rows, x, dx, dy)
-#define RELIEF(dx, dy) \
-  Relief { shown(rows, shown_grain, x, dx, dy), shown(rows, shown_toe, x, dx, dy) }
+#define CELL_ARGUMENTS , rows, x
+#define CROSSING(side, dx, dy) linked(rows, side_##side, x, dx, dy)
 #define ARRIVING(member, dx, dy) shown(rows, shown_##member, x, dx, dy)
 #define BLOCKING(dx, dy) shown(rows, shown_blocking, x, dx, dy)
-#define CELL_ARGUMENTS , rows, x
 #include "sim/ink/kernels/step.k"
 #include "sim/ink/kernels/water.k"
+
+template <class Around>
+FUNCTION Crossing link_e(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
+  const Site there = shown_site(rows, x, 1, 0);
+  return crossing(k, here, there, here.head, there.head, k.pace_straight, ARRIVING(e, 0, 0),
+                  ARRIVING(w, 1, 0));
+}
+
+template <class Around>
+FUNCTION Crossing link_n(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
+  const Site there = shown_site(rows, x, 0, 1);
+  return crossing(k, here, there, here.head, there.head, k.pace_straight, ARRIVING(n, 0, 0),
+                  ARRIVING(s, 0, 1));
+}
+
+template <class Around>
+FUNCTION Crossing link_ne(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
+  const Site there = shown_site(rows, x, 1, 1);
+  return crossing(k, here, there, here.diagonal_head, there.diagonal_head, k.pace_diagonal,
+                  ARRIVING(ne, 0, 0), ARRIVING(sw, 1, 1));
+}
+
+template <class Around>
+FUNCTION Crossing link_nw(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
+  const Site there = shown_site(rows, x, -1, 1);
+  return crossing(k, here, there, here.diagonal_head, there.diagonal_head, k.pace_diagonal,
+                  ARRIVING(nw, 0, 0), ARRIVING(se, -1, 1));
+}
+
+// The links of the row `rows` stands at, to the east and to the row above.
+template <class Rows>
+void link_row(const LatticeNumbers& numbers, const Surroundings<Rows::pitch>& rows, float* to) {
+  const LatticeNumbers k = numbers;
+  constexpr int pitch = Rows::pitch;
+  constexpr int width = Rows::width;
+  put_link<pitch>(to, side_e, -1, link_e(k, rows, shown_site(rows, -1, 0, 0), -1));
+  put_link<pitch>(to, side_ne, -1, link_ne(k, rows, shown_site(rows, -1, 0, 0), -1));
+  put_link<pitch>(to, side_nw, width, link_nw(k, rows, shown_site(rows, width, 0, 0), width));
+#pragma GCC ivdep
+  for (int x = 0; x < width; ++x) {
+    const Site here = shown_site(rows, x, 0, 0);
+    put_link<pitch>(to, side_e, x, link_e(k, rows, here, x));
+    put_link<pitch>(to, side_n, x, link_n(k, rows, here, x));
+    put_link<pitch>(to, side_ne, x, link_ne(k, rows, here, x));
+    put_link<pitch>(to, side_nw, x, link_nw(k, rows, here, x));
+  }
+}
 
 // Where a row of cells lies in the planes: its cells, and those just left and right of it.
 struct Source {
@@ -142,18 +225,20 @@ FUNCTION void show_cell(const LatticeNumbers& k, const Planes& planes, const flo
     to[shown_blocking * pitch] = blocking;
   } else {
     const Site site = site_of(k, total(f), quad(planes, flowing, tile::mass, x),
-                              flowing[tile::fixed_ink * planes.plane + x], blocking);
+                              flowing[tile::fixed_ink * planes.plane + x], blocking,
+                              paper[tile::grain * planes.plane + x], paper[tile::toe * planes.plane + x]);
     to[shown_blocking * pitch] = site.blocking;
-    to[shown_grain * pitch] = paper[tile::grain * planes.plane + x];
-    to[shown_toe * pitch] = paper[tile::toe * planes.plane + x];
     to[shown_water * pitch] = site.water;
     to[shown_per_water * pitch] = site.per_water;
     to[shown_concentration * pitch] = site.concentration.x;
     to[(shown_concentration + 1) * pitch] = site.concentration.y;
     to[(shown_concentration + 2) * pitch] = site.concentration.z;
     to[(shown_concentration + 3) * pitch] = site.concentration.w;
-    to[shown_hold * pitch] = site.hold;
+    to[shown_head * pitch] = site.head;
+    to[shown_diagonal_head * pitch] = site.diagonal_head;
     to[shown_toes * pitch] = site.toes;
+    to[shown_barrier * pitch] = site.barrier;
+    to[shown_toe * pitch] = site.toe;
   }
 }
 
@@ -189,7 +274,7 @@ struct RowMemory {
   float* still;
 };
 
-template <class Rows, class Planes>
+template <bool over_relaxed, class Rows, class Planes>
 void step_ink_row(const LatticeNumbers& numbers, const Planes& planes, const Surroundings<Rows::pitch>& rows,
                   const RowMemory& memory, float* evaporated, float* wet) {
   const LatticeNumbers k = numbers;
@@ -203,7 +288,8 @@ void step_ink_row(const LatticeNumbers& numbers, const Planes& planes, const Sur
     Population after;
     float water;
     float gone;
-    step_cell(k, before CELL_ARGUMENTS, mass, surface, surface_mass, fixed_mass, after, water, gone);
+    step_cell(k, over_relaxed, shown_site(rows, x, 0, 0), before CELL_ARGUMENTS, mass, surface, surface_mass,
+              fixed_mass, after, water, gone);
     put_population(planes, memory.next, x, after);
     put_quad(planes, memory.next, tile::mass, x, mass);
     memory.next[tile::fixed_ink * planes.plane + x] =
@@ -216,14 +302,14 @@ void step_ink_row(const LatticeNumbers& numbers, const Planes& planes, const Sur
   }
 }
 
-template <class Rows, class Planes>
+template <bool over_relaxed, class Rows, class Planes>
 void step_water_row(const LatticeNumbers& numbers, const Planes& planes,
                     const Surroundings<Rows::pitch>& rows, const RowMemory& memory) {
   const LatticeNumbers k = numbers;
 #pragma GCC ivdep
   for (int x = 0; x < Rows::width; ++x)
     put_population(planes, memory.next, x,
-                   step_water(k, population(planes, memory.flowing, x) CELL_ARGUMENTS));
+                   step_water(k, over_relaxed, population(planes, memory.flowing, x) CELL_ARGUMENTS));
 }
 
 template <int width>
@@ -275,22 +361,32 @@ FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceO
   alignas(64) float evaporated[Rows::width];
   alignas(64) float wet[Rows::width];
   const auto show = [&](int y) {
-    show_row<ink, Rows>(k, planes, source(now, y), source(tile::paper_begin, y), rows.row(y));
+    show_row<ink, Rows>(k, planes, source(now, y), source(tile::paper_begin, y), rows.shown_row(y));
+  };
+  const auto around = [&](int y) -> Surroundings<Rows::pitch> {
+    return {{rows.shown_row(y - 1), rows.shown_row(y), rows.shown_row(y + 1)},
+            {rows.linked_row(y - 1), rows.linked_row(y)}};
   };
   show(-1);
   show(0);
+  if constexpr (ink) link_row<Rows>(k, around(-1), rows.linked_row(-1));
   for (int y = 0; y < tile::side; ++y) {
     show(y + 1);
-    const Surroundings<Rows::pitch> around{{rows.row(y - 1), rows.row(y), rows.row(y + 1)}};
     const auto at = [&](std::size_t plane) {
       return block + static_cast<std::ptrdiff_t>(plane) * planes.plane + y * row;
     };
     const RowMemory memory{at(now), at(next), at(tile::still_begin)};
     if constexpr (ink) {
-      step_ink_row<Rows>(k, planes, around, memory, evaporated, wet);
+      link_row<Rows>(k, around(y), rows.linked_row(y));
+      if (k.relaxation > 1)
+        step_ink_row<true, Rows>(k, planes, around(y), memory, evaporated, wet);
+      else
+        step_ink_row<false, Rows>(k, planes, around(y), memory, evaporated, wet);
       tally.add(y, evaporated, wet);
+    } else if (k.relaxation > 1) {
+      step_water_row<true, Rows>(k, planes, around(y), memory);
     } else {
-      step_water_row<Rows>(k, planes, around, memory);
+      step_water_row<false, Rows>(k, planes, around(y), memory);
     }
   }
   if constexpr (ink) tally.finish(outcome);
