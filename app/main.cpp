@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   fude::add_replay(app, status);
   fude::add_import(app, status);
+  fude::add_perform(app, status);
   fude::add_info(app, status);
   fude::add_bench(app, status);
   try {

@@ -8,20 +8,21 @@ namespace fude {
 namespace {
 
 // Events without a description still belong to some device; its axes are not known.
-DeviceDescription undescribed(const std::filesystem::path& file) {
+DeviceDescription undescribed() {
   DeviceDescription device;
-  device.name = file.filename().string();
+  device.name = "a device without a description";
   device.transport = "evdev";
   return device;
 }
 
+// Actions go between the samples, where their time puts them.
 Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& recording,
-                                    const std::filesystem::path& file) {
+                                    std::span<const Action> actions) {
   ImportedStream stream;
   stream.events = recording.counts.events;
   stream.frames = recording.counts.frames;
   const bool text = !recording.samples.empty() || (recording.device && recording.device->transport == "text");
-  const DeviceDescription device = !recording.device ? undescribed(file)
+  const DeviceDescription device = !recording.device ? undescribed()
                                    : text            ? *recording.device
                                                      : identified(*recording.device);
   stream.device = recording.device ? device.name : "";
@@ -35,6 +36,8 @@ Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& reco
   }
   PenDecoder decoder(device);
   for (const Transfer& transfer : recording.transfers) {
+    for (; !actions.empty() && actions.front().time <= transfer.time; actions = actions.subspan(1))
+      if (auto r = out.add_action(actions.front()); !r) return tl::unexpected(r.error());
     if (auto r = out.add_transfer(*number, transfer); !r) return tl::unexpected(r.error());
     if (stream.raw_only) continue;
     if (const auto sample = decoder.decode(transfer))
@@ -58,41 +61,49 @@ Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& reco
 
 }  // namespace
 
-Result<ImportReceipt> import_session(const std::filesystem::path& file, const std::filesystem::path& session,
-                                     const ImportWish& wish) {
+Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecording> recordings,
+                                                     std::span<const Action> actions,
+                                                     const std::string& origin,
+                                                     const std::filesystem::path& session, bool overwrite) {
   std::error_code error;
-  if (!wish.overwrite && std::filesystem::exists(session, error))
+  if (!overwrite && std::filesystem::exists(session, error))
     return failure(Fault::usage, session.string() + " exists already; choose another name or give --force");
-  const auto imported = import_file(file, wish.options);
-  if (!imported) return tl::unexpected(imported.error());
-
   const std::filesystem::path unfinished = session.string() + ".part";
   std::filesystem::remove(unfinished, error);
-  const auto write = [&]() -> Result<ImportReceipt> {
+  const auto write = [&]() -> Result<std::vector<ImportedStream>> {
     auto out = SessionWriter::create(unfinished);
     if (!out) return tl::unexpected(out.error());
-    ImportReceipt receipt{imported->format, {}};
-    if (auto r = out->set("imported_from", std::string(name_of(imported->format))); !r)
-      return tl::unexpected(r.error());
-    for (const RawRecording& recording : imported->recordings) {
-      auto stream = write_stream(*out, recording, file);
+    if (auto r = out->set("imported_from", origin); !r) return tl::unexpected(r.error());
+    std::vector<ImportedStream> streams;
+    for (const RawRecording& recording : recordings) {
+      auto stream = write_stream(*out, recording, actions);
       if (!stream) return tl::unexpected(stream.error());
-      receipt.streams.push_back(std::move(*stream));
+      actions = {};
+      streams.push_back(std::move(*stream));
     }
     if (auto r = out->close(); !r) return tl::unexpected(r.error());
-    return receipt;
+    return streams;
   };
-  auto receipt = write();
-  if (receipt) {
+  auto streams = write();
+  if (streams) {
     std::filesystem::rename(unfinished, session, error);
     if (error)
-      receipt = failure(Fault::no_access, session.string() + " cannot be written: " + error.message());
+      streams = failure(Fault::no_access, session.string() + " cannot be written: " + error.message());
   }
-  if (!receipt) {
+  if (!streams)
     for (const char* suffix : {"", "-wal", "-journal", "-shm"})
       std::filesystem::remove(unfinished.string() + suffix, error);
-  }
-  return receipt;
+  return streams;
+}
+
+Result<ImportReceipt> import_session(const std::filesystem::path& file, const std::filesystem::path& session,
+                                     const ImportWish& wish) {
+  const auto imported = import_file(file, wish.options);
+  if (!imported) return tl::unexpected(imported.error());
+  auto streams = write_recordings(imported->recordings, {}, std::string(name_of(imported->format)), session,
+                                  wish.overwrite);
+  if (!streams) return tl::unexpected(streams.error());
+  return ImportReceipt{imported->format, std::move(*streams)};
 }
 
 }  // namespace fude

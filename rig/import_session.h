@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "capture/import/import.h"
 #include "capture/session.h"
+#include "signal/action.h"
 #include "signal/result.h"
 
 namespace fude {
@@ -30,13 +32,19 @@ struct ImportReceipt {
   std::vector<ImportedStream> streams;
 };
 
+// Writes recordings, and what the painter did, as one session: it appears whole or not at all.
+// Errors: usage where `session` exists and may not be replaced; no_access; storage.
+Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecording> recordings,
+                                                     std::span<const Action> actions,
+                                                     const std::string& origin,
+                                                     const std::filesystem::path& session, bool overwrite);
+
 struct ImportWish {
   ImportOptions options;
   bool overwrite = false;
 };
 
-// The session appears whole or not at all.
-// Errors: those of import_file; usage where `session` exists and may not be replaced; storage.
+// Errors: those of import_file and of write_recordings.
 Result<ImportReceipt> import_session(const std::filesystem::path& file, const std::filesystem::path& session,
                                      const ImportWish& wish);
 

@@ -1,0 +1,89 @@
+#include <toml++/toml.h>
+
+#include <cmath>
+
+#include "rig/performance.h"
+
+namespace fude {
+namespace {
+
+constexpr double longest_beat_s = 60;
+
+std::optional<double> number(const toml::node* node) {
+  if (!node) return std::nullopt;
+  const auto value = node->value<double>();
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<PerformedKnot> knot_from(const toml::node& node) {
+  const toml::array* row = node.as_array();
+  if (!row || row->size() < 3 || row->size() > 4) return std::nullopt;
+  const auto x = number(row->get(0));
+  const auto y = number(row->get(1));
+  const auto pressure = number(row->get(2));
+  const auto beat = number(row->get(3));
+  if (!x || !y || !pressure || *pressure < 0 || *pressure > 1) return std::nullopt;
+  if (row->size() == 4 && !(beat && *beat > 0 && *beat <= longest_beat_s)) return std::nullopt;
+  return PerformedKnot{*x, *y, *pressure, beat};
+}
+
+std::optional<PerformedStroke> stroke_from(const toml::table& table) {
+  PerformedStroke stroke;
+  stroke.name = table["name"].value_or("");
+  stroke.tilt_x = degrees(table["tilt_x_deg"].value_or(0.0));
+  stroke.tilt_y = degrees(table["tilt_y_deg"].value_or(0.0));
+  stroke.rest_s = table["rest_s"].value_or(stroke.rest_s);
+  if (const toml::table* load = table["load"].as_table()) {
+    LoadBrush dip;
+    dip.wetness = (*load)["wetness"].value_or(1.0F);
+    dip.strength[0] = (*load)["ink"].value_or(1.0F);
+    dip.strength[glue_channel] = (*load)["glue"].value_or(0.1F);
+    stroke.load = dip;
+  }
+  const toml::array* knots = table["knots"].as_array();
+  if (!knots || !(stroke.rest_s > 0 && stroke.rest_s <= longest_beat_s)) return std::nullopt;
+  for (const toml::node& node : *knots) {
+    const auto knot = knot_from(node);
+    if (!knot) return std::nullopt;
+    stroke.knots.push_back(*knot);
+  }
+  if (stroke.knots.size() < 2 || !stroke.knots.back().beat_s) return std::nullopt;
+  return stroke;
+}
+
+}  // namespace
+
+Result<Performance> read_performance(std::string_view text, const std::string& source) {
+  toml::table table;
+  try {
+    table = toml::parse(text, source);
+  } catch (const toml::parse_error& e) {
+    return failure(Fault::malformed, source + ": line " + std::to_string(e.source().begin.line) + ": " +
+                                         std::string(e.description()));
+  }
+  Performance performance;
+  performance.name = table["name"].value_or("");
+  performance.rate_hz = table["rate_hz"].value_or(performance.rate_hz);
+  performance.width = Millimetres(table["width_mm"].value_or(0.0));
+  performance.height = Millimetres(table["height_mm"].value_or(0.0));
+  if (performance.name.empty() || !(performance.rate_hz >= 10 && performance.rate_hz <= 2000) ||
+      !(performance.width.value >= 1 && performance.width.value <= 2000) ||
+      !(performance.height.value >= 1 && performance.height.value <= 2000))
+    return failure(
+        Fault::malformed,
+        source + ": a performance has a name, rate_hz (10 to 2000), width_mm and height_mm (1 to 2000)");
+  if (const toml::array* strokes = table["stroke"].as_array())
+    for (const toml::node& node : *strokes) {
+      const auto stroke = node.as_table() ? stroke_from(*node.as_table()) : std::nullopt;
+      if (!stroke)
+        return failure(Fault::malformed,
+                       source + ": line " + std::to_string(node.source().begin.line) +
+                           ": a stroke has knots [x, y, pressure] or [x, y, pressure, seconds], two "
+                           "at least, the last with seconds");
+      performance.strokes.push_back(*stroke);
+    }
+  if (performance.strokes.empty()) return failure(Fault::malformed, source + ": no [[stroke]]");
+  return performance;
+}
+
+}  // namespace fude
