@@ -68,7 +68,7 @@ BrushBench bench_brush(const BrushSpec& spec, int runs) {
   const Tuft tuft = make_tuft(spec);
   const HairTexture texture(spec, 1);
   Loading loading = dry_loading(tuft);
-  fill(loading, 0.3, {1, 0, 0, 0.1F});
+  fill(loading, 1, {1, 0, 0, 0.1F});
   const std::vector<InkLoad> loads = offered(loading);
   std::vector<double> solve_us(frames, std::numeric_limits<double>::infinity());
   std::vector<double> footprint_us(frames, std::numeric_limits<double>::infinity());
@@ -83,7 +83,7 @@ BrushBench bench_brush(const BrushSpec& spec, int runs) {
       SolveReport report;
       const Pose<Paper, Handle> pose = bench_pose(spec, f * frame_s);
       const double solve = microseconds([&] { report = advance(tuft, state, pose, frame_s, f == 0); });
-      const std::array<TimedSurface, 1> now = {{{surface_of(tuft, state), frame_s}}};
+      const std::array<TimedSurface, 1> now = {{{swollen(surface_of(tuft, state), spec.soak_mm), frame_s}}};
       bool touched = false;
       const double footprint =
           microseconds([&] { touched = sweep(before, now, tuft.spec.cell_mm, texture, loads).has_value(); });

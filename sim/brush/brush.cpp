@@ -71,7 +71,8 @@ BrushFrame Brush::move(const BrushInput& input) {
   const Pose<Paper, Handle> start = state_.tuft.paper_from_handle;
   const bool jumped = first || input.after_gap || elapsed_s > gap_s || !state_.tuft.placed ||
                       !state_.footprint || (target.translation - start.translation).norm() > jump_mm;
-  const TuftSurface before = jumped ? TuftSurface{} : surface_of(tuft_, state_.tuft);
+  const double soak_mm = tuft_.spec.soak_mm * wetness(state_.loading);
+  const TuftSurface before = jumped ? TuftSurface{} : swollen(surface_of(tuft_, state_.tuft), state_.soak_mm);
   const int steps =
       jumped ? 1
              : std::clamp(static_cast<int>(std::ceil(elapsed_s / tuft_.spec.longest_step_s - 1e-6)), 1,
@@ -81,9 +82,10 @@ BrushFrame Brush::move(const BrushInput& input) {
     const Pose<Paper, Handle> pose = jumped ? target : between(start, target, static_cast<double>(k) / steps);
     const SolveReport report = advance(tuft_, state_.tuft, pose, elapsed_s / steps, jumped);
     take_worse(frame.solve, report);
-    after.push_back({surface_of(tuft_, state_.tuft), elapsed_s / steps});
+    after.push_back({swollen(surface_of(tuft_, state_.tuft), soak_mm), elapsed_s / steps});
   }
   frame.steps = steps;
+  state_.soak_mm = soak_mm;
   state_.footprint = true;
 
   std::vector<InkLoad> loads = offered(state_.loading);

@@ -27,6 +27,7 @@ namespace fude {
 struct BrushState {
   TuftState tuft;
   Loading loading;
+  double soak_mm = 0;      // by which the last footprint was swollen
   bool footprint = false;  // the last pose may be swept from
   bool timed = false;      // there is a last time
   Timestamp last{};

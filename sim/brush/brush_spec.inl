@@ -4,12 +4,12 @@
 
 // Shape at rest
 BRUSH_PARAMETER(segments, "count", 3, 8, 6, "segments of the spine")
-BRUSH_PARAMETER(segment_ratio, "1", 0.5, 1, 0.82, "length of a segment over the one above it")
+BRUSH_PARAMETER(segment_ratio, "1", 0.5, 1, 0.78, "length of a segment over the one above it")
 BRUSH_PARAMETER(tuft_length_mm, "mm", 5, 120, 32, "length of the hair outside the ferrule")
 BRUSH_PARAMETER(root_radius_mm, "mm", 0.5, 25, 3.4, "radius where hair leaves the ferrule")
 BRUSH_PARAMETER(belly_radius_mm, "mm", 0.5, 25, 3.9, "largest radius of the wet, unbent tuft")
 BRUSH_PARAMETER(belly_at, "1", 0.05, 0.8, 0.3, "where the belly is: 0 root, 1 tip")
-BRUSH_PARAMETER(taper, "1", 0.6, 3, 1.15, "1 tapers as a cone from belly to tip; more keeps the belly longer")
+BRUSH_PARAMETER(taper, "1", 0.6, 3, 1.5, "1 tapers as a cone from belly to tip; more keeps the belly longer")
 BRUSH_PARAMETER(tip_radius_mm, "mm", 0.02, 5, 0.08, "radius at the very tip")
 BRUSH_PARAMETER(lowest_root, "1", 0.1, 0.9, 0.2, "lowest height of the root over the paper, over the length; the hand stops there")
 BRUSH_PARAMETER(contact_share, "1", 0.2, 0.95, 0.6, "shrunk section that the paper stops, over the full one")
@@ -17,22 +17,23 @@ BRUSH_PARAMETER(lateral_share, "1", 0.1, 0.9, 0.7, "effective radius of a latera
 
 // Springs: energy (k/m)|x|^m
 BRUSH_PARAMETER(spring_exponent, "1", 2, 3, 2, "m, of the bend, twist and stretch springs")
-BRUSH_PARAMETER(bend_stiffness, "mN mm2", 10, 1e6, 60000, "of the tuft at its root, times radians per mm of curvature")
-BRUSH_PARAMETER(stiffness_fall, "1", 0, 4, 2.6, "stiffness goes as the radius to this power")
+BRUSH_PARAMETER(bend_stiffness, "mN mm2", 10, 1e7, 180000, "of the tuft at its root, times radians per mm of curvature")
+BRUSH_PARAMETER(stiffness_fall, "1", 0, 6, 2.8, "stiffness goes as the length below to this power: the core of a tuft is made of shorter hair")
 BRUSH_PARAMETER(side_bend_ratio, "1", 1, 20, 2.5, "stiffness against bending along the lateral line")
 BRUSH_PARAMETER(twist_ratio, "1", 0.05, 20, 0.8, "twist stiffness over bend stiffness; none at the root")
 BRUSH_PARAMETER(stretch_stiffness, "mN/mm", 0.1, 1e4, 35, "of a lateral node's stretch spring at the belly")
 BRUSH_PARAMETER(side_hair_stiffness, "mN mm", 0, 1e5, 60, "of the hair along the sides against a change of slope")
-BRUSH_PARAMETER(spread_press, "1", 0, 3, 0.22, "rest stretch over radius of a submerged, unbent segment")
-BRUSH_PARAMETER(spread_bend, "1", 0, 3, 0.5, "and what a sharp bend adds to it")
+BRUSH_PARAMETER(spread_press, "1", 0, 3, 0.25, "rest stretch over radius of a submerged, unbent segment")
+BRUSH_PARAMETER(spread_bend, "1", 0, 3, 0.6, "and what a sharp bend adds to it")
 BRUSH_PARAMETER(spread_half_bend_rad, "rad", 0.01, 2, 0.35, "bend at which half of that is reached")
 BRUSH_PARAMETER(spread_limit, "1", 0.1, 5, 1.6, "largest stretch over radius")
 
 // Friction
-BRUSH_PARAMETER(friction_along, "1", 0, 3, 0.3, "coefficient along the hair")
-BRUSH_PARAMETER(friction_across, "1", 0, 3, 0.45, "coefficient across the hair")
+BRUSH_PARAMETER(friction_along, "1", 0, 3, 0.2, "coefficient along the hair")
+BRUSH_PARAMETER(friction_across, "1", 0, 3, 0.35, "coefficient across the hair")
 BRUSH_PARAMETER(friction_slip_mm, "mm", 0.005, 1, 0.08, "epsilon: the slip over which friction builds up")
 BRUSH_PARAMETER(adhesion_mn, "mN", 0, 100, 2.0, "wet adhesion of a fully submerged node, added to its reaction")
+BRUSH_PARAMETER(reaction_lag_s, "s", 0, 0.1, 0.008, "time over which friction and spreading follow a change of contact")
 BRUSH_PARAMETER(internal_friction_s, "s", 0, 1, 0.012, "time in which a bent tuft springs back, under water")
 
 // Plasticity (Chu 2.5.5)
@@ -49,6 +50,7 @@ BRUSH_PARAMETER(pore_strength_mn, "mN", 0.1, 1e4, 12, "force at which the tip ju
 // Ink in the tuft
 BRUSH_PARAMETER(capacity_ul, "ul", 1, 5000, 160, "water in a full tuft")
 BRUSH_PARAMETER(moisture_flow_per_s, "1/s", 0, 50, 1.5, "how fast neighbouring patches even out")
+BRUSH_PARAMETER(soak_mm, "mm", 0, 3, 0.35, "how far ink swells a soaked tuft; less as it dries")
 BRUSH_PARAMETER(hair_count, "count", 8, 2000, 220, "hair bundles around the tuft, for streaks")
 BRUSH_PARAMETER(streak_wetness, "1", 0, 1, 0.45, "wetness below which streaks open")
 

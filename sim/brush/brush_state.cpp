@@ -110,6 +110,7 @@ void walk(Archive& archive, State& state) {
     for (auto& volume : patch.pigment_ul) archive(volume);
   }
   archive(state.loading.endless);
+  archive(state.soak_mm);
   archive(state.footprint);
   archive(state.timed);
 }

@@ -1,11 +1,20 @@
 #include "sim/brush/coverage.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
 namespace fude {
+namespace {
+
+// The first sample whose centre is not left of x, held to [0, limit]; std::ceil is a call without SSE4.
+int first_sample(double x, int limit) {
+  const double shifted = std::clamp(x - 0.5, 0.0, static_cast<double>(limit));
+  const int below = static_cast<int>(shifted);
+  return below < shifted ? below + 1 : below;
+}
+
+}  // namespace
 
 using Eigen::Vector2d;
 
@@ -31,8 +40,8 @@ void Coverage::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
 // Samples whose centres lie in [from, to), in samples from the frame's left edge.
 void Coverage::add_span(int sample_row, double from, double to) {
   const int width = frame_.words * 64;
-  const int first = std::clamp(static_cast<int>(std::ceil(from - 0.5)), 0, width);
-  const int last = std::clamp(static_cast<int>(std::ceil(to - 0.5)), 0, width) - 1;
+  const int first = first_sample(from, width);
+  const int last = first_sample(to, width) - 1;
   if (first > last) return;
   std::uint64_t* words = line(sample_row);
   const int a = first >> 6;
@@ -58,8 +67,8 @@ void Coverage::add_triangle(const Vector2d& a, const Vector2d& b, const Vector2d
   if (q.y() > r.y()) std::swap(q, r);
   if (p.y() > q.y()) std::swap(p, q);
   const int height = frame_.rows * samples_per_side;
-  const int first = std::clamp(static_cast<int>(std::ceil(p.y() - 0.5)), 0, height);
-  const int last = std::clamp(static_cast<int>(std::ceil(r.y() - 0.5)), 0, height) - 1;
+  const int first = first_sample(p.y(), height);
+  const int last = first_sample(r.y(), height) - 1;
   if (first > last) return;
   const double long_slope = (r.x() - p.x()) / (r.y() - p.y());
   const double lower_slope = q.y() > p.y() ? (q.x() - p.x()) / (q.y() - p.y()) : 0;
@@ -87,12 +96,19 @@ bool Coverage::any(int row, int word) const {
 }
 
 void Coverage::count_samples(int row, int word, std::uint8_t (&counts)[cells_per_word]) const {
-  std::fill(std::begin(counts), std::end(counts), std::uint8_t{0});
+  // Bits of each nibble are added up side by side, then even and odd nibbles in bytes of their own.
+  std::uint64_t even = 0;
+  std::uint64_t odd = 0;
   for (int s = 0; s < samples_per_side; ++s) {
-    const std::uint64_t w = line(row * samples_per_side + s)[word];
-    if (w == 0) continue;
-    for (int cell = 0; cell < cells_per_word; ++cell)
-      counts[cell] = static_cast<std::uint8_t>(counts[cell] + std::popcount((w >> (4 * cell)) & 15U));
+    std::uint64_t w = line(row * samples_per_side + s)[word];
+    w -= (w >> 1) & 0x5555555555555555ULL;
+    w = (w & 0x3333333333333333ULL) + ((w >> 2) & 0x3333333333333333ULL);
+    even += w & 0x0f0f0f0f0f0f0f0fULL;
+    odd += (w >> 4) & 0x0f0f0f0f0f0f0f0fULL;
+  }
+  for (int pair = 0; pair < cells_per_word / 2; ++pair) {
+    counts[2 * pair] = static_cast<std::uint8_t>(even >> (8 * pair));
+    counts[2 * pair + 1] = static_cast<std::uint8_t>(odd >> (8 * pair));
   }
 }
 

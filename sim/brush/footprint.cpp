@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "sim/brush/coverage.h"
 #include "sim/brush/loading.h"
@@ -13,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double sweep_step_mm = 0.2;
+constexpr double sweep_step_mm = 0.4;
 constexpr int most_steps = 24;
 
 // Contacts on the way, each with the share of time it stands for.
@@ -110,6 +109,7 @@ class Stamp {
     const auto cells = static_cast<std::size_t>(frame.columns()) * static_cast<std::size_t>(frame.rows);
     patch_.assign(cells, none);
     inked_.assign(cells, 1);
+    for (const InkLoad& load : loads) streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
   }
 
   // Fills cells that no later instant has filled.
@@ -148,7 +148,19 @@ class Stamp {
   const std::vector<InkLoad>& loads_;
   std::vector<std::uint16_t> patch_;
   std::vector<float> inked_;
+  bool streaky_ = false;
 };
+
+// Narrows [from, to] to where value + slope x ≥ 0.
+void clip(double value, double slope, double& from, double& to) {
+  if (slope > 0) {
+    from = std::max(from, -value / slope);
+  } else if (slope < 0) {
+    to = std::min(to, -value / slope);
+  } else if (value < 0) {
+    to = from - 1;
+  }
+}
 
 // Within a quad the place on the tuft goes over linearly: bilinear inverse by its two triangles.
 void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_t j) {
@@ -168,29 +180,40 @@ void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_
     const Vector2d v = (corner[t[2]].p - corner[t[0]].p) / frame_.cell_mm;
     const double area = u.x() * v.y() - u.y() * v.x();
     if (std::abs(area) < 1e-12) continue;
-    const auto low = [](double x0, double x1, double x2) {
-      return std::max(0, static_cast<int>(std::min({x0, x1, x2})));
-    };
-    const int row_end =
-        std::min(frame_.rows - 1, static_cast<int>(std::max({p.y(), p.y() + u.y(), p.y() + v.y()})));
-    const int column_end =
-        std::min(frame_.columns() - 1, static_cast<int>(std::max({p.x(), p.x() + u.x(), p.x() + v.x()})));
-    for (int row = low(p.y(), p.y() + u.y(), p.y() + v.y()); row <= row_end; ++row) {
-      for (int column = low(p.x(), p.x() + u.x(), p.x() + v.x()); column <= column_end; ++column) {
-        if (patch_[at(row, column)] != none) continue;
-        const double dx = column + 0.5 - p.x();
-        const double dy = row + 0.5 - p.y();
-        const double s = (dx * v.y() - dy * v.x()) / area;
-        const double r = (dy * u.x() - dx * u.y()) / area;
-        if (s < 0 || r < 0 || s + r > 1) continue;
-        const double along = corner[t[0]].along + s * (corner[t[1]].along - corner[t[0]].along) +
-                             r * (corner[t[2]].along - corner[t[0]].along);
-        const double around = corner[t[0]].around + s * (corner[t[1]].around - corner[t[0]].around) +
-                              r * (corner[t[2]].around - corner[t[0]].around);
+    const double along_s = corner[t[1]].along - corner[t[0]].along;
+    const double along_r = corner[t[2]].along - corner[t[0]].along;
+    const double around_s = corner[t[1]].around - corner[t[0]].around;
+    const double around_r = corner[t[2]].around - corner[t[0]].around;
+    // Cell centres in a row lie in the triangle where s, r and 1 − s − r are all positive; each is a
+    // straight line along the row.
+    const int row_end = std::min(frame_.rows - 1, static_cast<int>(std::max({p.y(), p.y() + u.y(), p.y() + v.y()})));
+    const double s_by_x = v.y() / area;
+    const double r_by_x = -u.y() / area;
+    for (int row = std::max(0, static_cast<int>(std::min({p.y(), p.y() + u.y(), p.y() + v.y()}))); row <= row_end;
+         ++row) {
+      const double dy = row + 0.5 - p.y();
+      const double s0 = (-p.x() * v.y() - dy * v.x()) / area;
+      const double r0 = (dy * u.x() + p.x() * u.y()) / area;
+      double from = 0;
+      double to = frame_.columns();
+      clip(s0, s_by_x, from, to);
+      clip(r0, r_by_x, from, to);
+      clip(1 - s0 - r0, -s_by_x - r_by_x, from, to);
+      const int last = to < 0.5 ? -1 : std::min(frame_.columns() - 1, static_cast<int>(to - 0.5));
+      const double along_by_x = s_by_x * along_s + r_by_x * along_r;
+      const double around_by_x = s_by_x * around_s + r_by_x * around_r;
+      const double along_0 = corner[t[0]].along + s0 * along_s + r0 * along_r;
+      const double around_0 = corner[t[0]].around + s0 * around_s + r0 * around_r;
+      for (int column = static_cast<int>(from + 0.5); column <= last; ++column) {
+        const std::size_t cell = at(row, column);
+        if (patch_[cell] != none) continue;
+        const double along = along_0 + along_by_x * (column + 0.5);
+        const double around = around_0 + around_by_x * (column + 0.5);
         const int patch = patch_at(along, around);
-        const double wetness = static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness);
-        patch_[at(row, column)] = static_cast<std::uint16_t>(patch);
-        inked_[at(row, column)] = static_cast<float>(texture_.inked(along, around, wetness));
+        patch_[cell] = static_cast<std::uint16_t>(patch);
+        if (streaky_)
+          inked_[cell] = static_cast<float>(
+              texture_.inked(along, around, static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness)));
       }
     }
   }

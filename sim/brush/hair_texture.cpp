@@ -1,7 +1,6 @@
 #include "sim/brush/hair_texture.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace fude {
 namespace {
@@ -38,8 +37,7 @@ HairTexture::HairTexture(const BrushSpec& spec, std::uint64_t seed)
 
 double HairTexture::inked(double along, double around, double wetness) const {
   if (wetness >= streak_wetness_) return 1;
-  const double turns = around / (2 * std::numbers::pi) + 2;
-  const double within = turns - static_cast<double>(static_cast<int>(turns));
+  const double within = around + 1 - static_cast<double>(static_cast<int>(around + 1));
   const int bundle = std::clamp(static_cast<int>(within * bundles_), 0, bundles_ - 1);
   const int level = std::clamp(static_cast<int>(along * levels), 0, levels - 1);
   const double dry = static_cast<double>(dries_at_[static_cast<std::size_t>(bundle * levels + level)]);

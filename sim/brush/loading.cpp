@@ -1,15 +1,12 @@
 #include "sim/brush/loading.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 
 #include "signal/elementary.h"
 
 namespace fude {
 namespace {
-
-using std::numbers::pi;
 
 std::size_t patch_index(int along, int around) {
   return static_cast<std::size_t>(along * patches_around + around);
@@ -38,8 +35,7 @@ void exchange_between(LoadedPatch& a, LoadedPatch& b, double share) {
 
 int patch_at(double along, double around) {
   const int row = std::clamp(static_cast<int>(along * patches_along), 0, patches_along - 1);
-  const double turns = around / (2 * pi) + 2;
-  const double within = turns - static_cast<double>(static_cast<int>(turns));
+  const double within = around + 1 - static_cast<double>(static_cast<int>(around + 1));
   const int column = std::clamp(static_cast<int>(within * patches_around), 0, patches_around - 1);
   return row * patches_around + column;
 }
@@ -68,6 +64,16 @@ void fill(Loading& loading, double wetness, const Concentrations& strength) {
     for (std::size_t c = 0; c < concentrations_per_group; ++c)
       patch.pigment_ul[c] = patch.water_ul * strength[c];
   }
+}
+
+double wetness(const Loading& loading) {
+  double water = 0;
+  double capacity = 0;
+  for (const LoadedPatch& patch : loading.patches) {
+    water += patch.water_ul;
+    capacity += patch.capacity_ul;
+  }
+  return std::clamp(water / capacity, 0.0, 1.0);
 }
 
 std::vector<InkLoad> offered(const Loading& loading) {

@@ -13,7 +13,7 @@ inline constexpr int patches_along = 8;
 inline constexpr int patches_around = 8;
 inline constexpr int patch_count = patches_along * patches_around;
 
-// The patch at `along` (0 root to 1 tip) and `around` radians from the lateral line.
+// The patch at `along` (0 root to 1 tip) and `around` turns from the lateral line (not below −1).
 int patch_at(double along, double around);
 
 struct LoadedPatch {
@@ -33,6 +33,9 @@ Loading dry_loading(const Tuft& tuft);
 // Fills every patch to `wetness` (0 to 1) of its capacity with ink of `strength` (µl of full-strength
 // pigment, and glue, in one µl).
 void fill(Loading& loading, double wetness, const Concentrations& strength);
+
+// Water in the tuft over its capacity, 0 to 1.
+double wetness(const Loading& loading);
 
 std::vector<InkLoad> offered(const Loading& loading);
 

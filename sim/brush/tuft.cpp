@@ -32,10 +32,12 @@ Tuft make_tuft(const BrushSpec& spec) {
     tuft.radius_mm[i] = rest_radius_mm(spec, along_mm / spec.tuft_length_mm);
     if (i < n) along_mm += tuft.length_mm[i];
   }
+  double hanging_mm = spec.tuft_length_mm;
   for (std::size_t i = 0; i < n; ++i) {
     // A joint stands for half the segment above it and half the one below.
     const double span = i == 0 ? tuft.length_mm[0] : 0.5 * (tuft.length_mm[i - 1] + tuft.length_mm[i]);
-    const double thinning = elementary::power(tuft.radius_mm[i] / tuft.radius_mm[0], spec.stiffness_fall);
+    const double thinning = elementary::power(hanging_mm / spec.tuft_length_mm, spec.stiffness_fall);
+    hanging_mm -= tuft.length_mm[i];
     tuft.bend_stiffness[i] = spec.bend_stiffness * thinning / span;
     tuft.twist_stiffness[i] = i == 0 ? 0 : spec.twist_ratio * tuft.bend_stiffness[i];
   }

@@ -23,8 +23,10 @@ struct TuftState {
   SquareMatrix hessian;                 // of the Lagrangian, carried on (Chu 2.5.8)
   double hessian_step_s = 0;            // the step it was made for
   PerSegment<Eigen::Vector2d> set_rad;  // plastic shift of (φ, χ)
-  Multipliers reactions;                // of the contact constraints, mN; the last of the plane
-  PerNode<double> submerged{};          // p, 0 to 1
+  // Multipliers of the contact constraints (mN; the last of the plane) and submerged shares p, both
+  // lagging behind what was last solved.
+  Multipliers reactions;
+  PerNode<double> submerged{};
   PerNode<double> minor_mm{};           // c
   PerNode<std::array<Touch, 3>> touches{};
   BlockingPlane plane;

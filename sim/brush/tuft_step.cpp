@@ -153,7 +153,12 @@ void move_plane(const Tuft& tuft, TuftState& state, const Skeleton& skeleton) {
                   spec.pore_pressure_lead_mm * state.reactions[n - 1];
 }
 
-void settle(const Tuft& tuft, TuftState& state, const FrozenStep& frozen) {
+void settle(const Tuft& tuft, TuftState& state, const FrozenStep& frozen, const Multipliers& reactions) {
+  // Taken over at once, contact would hop between neighbouring nodes from step to step.
+  const double follow = tuft.spec.reaction_lag_s > 0
+                            ? 1 - elementary::exponential(-frozen.step_s / tuft.spec.reaction_lag_s)
+                            : 1;
+  state.reactions += follow * (reactions - state.reactions);
   const Skeleton skeleton = pose_skeleton(tuft, state.x, frozen.paper_from_handle);
   const Layout layout{tuft.segments};
   state.in_contact = false;
@@ -206,14 +211,19 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
   Skeleton skeleton = pose_skeleton(tuft, state.x, pose);
   const Vector2d motion = state.placed ? level(pose.translation - state.paper_from_handle.translation)
                                        : Vector2d(Vector2d::Zero());
-  bool low = false;
-  for (int k = 1; k <= tuft.segments; ++k)
-    low = low || skeleton.node[index(k)].z() < tuft.contact_share * state.minor_mm[index(k)];
-  if (low && !state.in_contact) {
+  bool touches = false;
+  bool presses = false;
+  for (int k = 1; k <= tuft.segments; ++k) {
+    touches = touches || skeleton.node[index(k)].z() < state.minor_mm[index(k)];
+    presses = presses || skeleton.node[index(k)].z() < tuft.contact_share * state.minor_mm[index(k)];
+  }
+  if (touches && !state.in_contact) {
     level_lateral_lines(tuft, state, skeleton, motion);
-    // Straight and upright, pressing has no way to go: a first bend gives it one.
-    if (total_bend(tuft, state.x) < straight_rad && level(skeleton.along[0]).norm() < upright_sine)
-      for (int i = 0; i < tuft.segments; ++i) state.x[Layout{tuft.segments}.bend(i)] += nudge_rad;
+    skeleton = pose_skeleton(tuft, state.x, pose);
+  }
+  // Straight and upright, pressing has no way to go: a first bend gives it one.
+  if (presses && total_bend(tuft, state.x) < straight_rad && level(skeleton.along[0]).norm() < upright_sine) {
+    for (int i = 0; i < tuft.segments; ++i) state.x[Layout{tuft.segments}.bend(i)] += nudge_rad;
     skeleton = pose_skeleton(tuft, state.x, pose);
   }
   state.x[Layout{tuft.segments}.yielding()] = 0;
@@ -251,10 +261,9 @@ SolveReport advance(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle
     state = rest_state(tuft);
     return {solved.iterations, false, 1, 0, 0};
   }
-  state.reactions = solved.multipliers;
   state.paper_from_handle = pose;
   state.placed = true;
-  settle(tuft, state, frozen);
+  settle(tuft, state, frozen, solved.multipliers);
   return {solved.iterations, solved.converged, solved.residual, solved.violation, solved.value};
 }
 

@@ -84,7 +84,8 @@ ContactRing ring_of(const Station& s, const SubmergedArc& arc) {
   for (int i = 0; i < ring_points; ++i) {
     const double around = arc.from + (arc.to - arc.from) * i / (ring_points - 1);
     ring.point[index(i)] = section_point(s, around).head<2>();
-    ring.around[index(i)] = s.flipped ? 2 * pi - around : around;
+    const double turns = around / (2 * pi);
+    ring.around[index(i)] = s.flipped ? 1 - turns : turns;
   }
   return ring;
 }
@@ -129,7 +130,7 @@ void append_tip(const Station& tip, Contact& contact) {
     ring.along = 1;
     for (int j = 0; j < ring_points; ++j) {
       ring.point[index(j)] = tip.centre.head<2>() + Vector2d(half * (j - 2) / 2, y);
-      ring.around[index(j)] = 0.5 * pi;
+      ring.around[index(j)] = 0.25;
     }
     run.push_back(ring);
   }
@@ -185,6 +186,15 @@ TuftSurface surface_of(const Tuft& tuft, const TuftState& state) {
       surface.push_back(s);
     }
     head_mm += length;
+  }
+  return surface;
+}
+
+TuftSurface swollen(TuftSurface surface, double by_mm) {
+  for (Station& s : surface) {
+    s.major_a += by_mm;
+    s.major_b += by_mm;
+    s.minor += by_mm;
   }
   return surface;
 }

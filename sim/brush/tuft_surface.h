@@ -28,6 +28,9 @@ using TuftSurface = std::vector<Station>;  // root to tip; as many for every sta
 
 TuftSurface surface_of(const Tuft& tuft, const TuftState& state);
 
+// The surface with the ink that clings to it: every section swollen by `by_mm` (Chu 2.7.2).
+TuftSurface swollen(TuftSurface surface, double by_mm);
+
 // Part of the way from a to b, t in [0, 1].
 TuftSurface between(const TuftSurface& a, const TuftSurface& b, double t);
 
@@ -39,7 +42,7 @@ inline constexpr int ring_points = 5;
 struct ContactRing {
   double along = 0;
   std::array<Eigen::Vector2d, ring_points> point;  // mm
-  std::array<double, ring_points> around{};        // angle about the spine from the lateral line, rad
+  std::array<double, ring_points> around{};        // turns about the spine from the lateral line
 };
 
 // What of the surface is in the paper: runs of rings, each run one patch of wetted paper.
