@@ -83,7 +83,8 @@ BrushBench bench_brush(const BrushSpec& spec, int runs) {
       SolveReport report;
       const Pose<Paper, Handle> pose = bench_pose(spec, f * frame_s);
       const double solve = microseconds([&] { report = advance(tuft, state, pose, frame_s, f == 0); });
-      const std::array<TimedSurface, 1> now = {{{swollen(surface_of(tuft, state), spec.soak_mm), frame_s}}};
+      const std::array<TimedSurface, 1> now = {
+          {{swollen(surface_of(tuft, state.x, state.paper_from_handle), spec.soak_mm), frame_s}}};
       bool touched = false;
       const double footprint =
           microseconds([&] { touched = sweep(before, now, tuft.spec.cell_mm, texture, loads).has_value(); });

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/brush/footprint.h"
-
 namespace fude {
 namespace {
 
 constexpr double out_of_reach_mm = 1e4;  // height at which nothing touches
 constexpr double gap_s = 0.25;           // a longer silence is a new stroke
 constexpr double jump_mm = 60;           // in one frame: no hand moves like that
-constexpr int most_steps = 8;
+constexpr int most_steps = 16;
 
 bool finite(const Pose<Paper, Handle>& pose) {
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite() &&
@@ -46,18 +44,29 @@ Brush::Brush(const BrushSpec& spec, std::uint64_t seed) : tuft_(make_tuft(spec))
 }
 
 // Springs back in free air, in one step however long it was away.
-void Brush::away(double dt_s) {
+void Brush::away(double elapsed_s) {
   Pose<Paper, Handle> pose = state_.tuft.paper_from_handle;
   pose.translation.z() = out_of_reach_mm;
-  advance(tuft_, state_.tuft, pose, dt_s, true);
-  state_.footprint = false;
+  advance(tuft_, state_.tuft, pose, elapsed_s, true);
+  state_.footprint = {};
+}
+
+TimedSurface Brush::surface() const {
+  const double soak_mm = tuft_.spec.soak_mm * wetness(state_.loading);
+  return {swollen(surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle), soak_mm),
+          state_.footprint.since_s};
+}
+
+void Brush::take_footprint() {
+  state_.footprint = {true, state_.tuft.x, state_.tuft.paper_from_handle,
+                      tuft_.spec.soak_mm * wetness(state_.loading), 0};
 }
 
 BrushFrame Brush::move(const BrushInput& input) {
   BrushFrame frame;
-  const double elapsed_s = state_.timed ? std::max(0.0, seconds(input.time.host - state_.last)) : 0;
-  if (!state_.timed || input.time.host > state_.last) state_.last = input.time.host;
   const bool first = !state_.timed;
+  const double elapsed_s = first ? 0 : std::max(0.0, seconds(input.time.host - state_.last));
+  state_.last = first ? input.time.host : std::max(state_.last, input.time.host);
   state_.timed = true;
   even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, 10.0));
   if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) {
@@ -69,24 +78,26 @@ BrushFrame Brush::move(const BrushInput& input) {
   target.rotation.normalize();
   target = reachable_pose(tuft_, target);
   const Pose<Paper, Handle> start = state_.tuft.paper_from_handle;
-  const bool jumped = first || input.after_gap || elapsed_s > gap_s || !state_.tuft.placed ||
-                      !state_.footprint || (target.translation - start.translation).norm() > jump_mm;
-  const double soak_mm = tuft_.spec.soak_mm * wetness(state_.loading);
-  const TuftSurface before = jumped ? TuftSurface{} : swollen(surface_of(tuft_, state_.tuft), state_.soak_mm);
-  const int steps =
-      jumped ? 1
-             : std::clamp(static_cast<int>(std::ceil(elapsed_s / tuft_.spec.longest_step_s - 1e-6)), 1,
-                          most_steps);
+  Footprint& footprint = state_.footprint;
+  const bool jumped = input.after_gap || elapsed_s > gap_s || !footprint.taken ||
+                      (target.translation - start.translation).norm() > jump_mm;
+  const TuftSurface before =
+      jumped ? TuftSurface{}
+             : swollen(surface_of(tuft_, footprint.x, footprint.paper_from_handle), footprint.soak_mm);
+  frame.steps = jumped ? 1
+                       : std::clamp(static_cast<int>(std::ceil(elapsed_s / tuft_.spec.longest_step_s - 1e-6)),
+                                    1, most_steps);
+  const double step_s = elapsed_s / frame.steps;
   std::vector<TimedSurface> after;
-  for (int k = 1; k <= steps; ++k) {
-    const Pose<Paper, Handle> pose = jumped ? target : between(start, target, static_cast<double>(k) / steps);
-    const SolveReport report = advance(tuft_, state_.tuft, pose, elapsed_s / steps, jumped);
-    take_worse(frame.solve, report);
-    after.push_back({swollen(surface_of(tuft_, state_.tuft), soak_mm), elapsed_s / steps});
+  for (int k = 1; k <= frame.steps; ++k) {
+    const Pose<Paper, Handle> pose =
+        jumped ? target : between(start, target, static_cast<double>(k) / frame.steps);
+    take_worse(frame.solve, advance(tuft_, state_.tuft, pose, step_s, jumped));
+    footprint.since_s += step_s;
+    if (!jumped && footprint.since_s < tuft_.spec.footprint_step_s - 1e-6) continue;
+    after.push_back(surface());
+    take_footprint();
   }
-  frame.steps = steps;
-  state_.soak_mm = soak_mm;
-  state_.footprint = true;
 
   std::vector<InkLoad> loads = offered(state_.loading);
   std::optional<FootprintMap> map = sweep(before, after, tuft_.spec.cell_mm, texture_, loads);
@@ -104,7 +115,7 @@ void Brush::set_endless(bool endless) { state_.loading.endless = endless; }
 
 void Brush::reshape() {
   state_.tuft = rest_state(tuft_);
-  state_.footprint = false;
+  state_.footprint = {};
 }
 
 TuftShape Brush::shape() const {
@@ -121,7 +132,7 @@ TuftShape Brush::shape() const {
     shape.lateral_a.push_back(skeleton.node[i] + a * skeleton.lateral[i]);
     shape.lateral_b.push_back(skeleton.node[i] - b * skeleton.lateral[i]);
   }
-  shape.sections = surface_of(tuft_, state_.tuft);
+  shape.sections = surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
   return shape;
 }
 

@@ -15,6 +15,7 @@
 #include "signal/ink_event.h"
 #include "signal/result.h"
 #include "sim/brush/brush_spec.h"
+#include "sim/brush/footprint.h"
 #include "sim/brush/hair_texture.h"
 #include "sim/brush/loading.h"
 #include "sim/brush/tuft_state.h"
@@ -23,13 +24,21 @@
 
 namespace fude {
 
+// The tuft as its last footprint was taken: where the next is swept from.
+struct Footprint {
+  bool taken = false;
+  Variables x;
+  Pose<Paper, Handle> paper_from_handle;
+  double soak_mm = 0;  // by which it was swollen
+  double since_s = 0;  // time solved since then
+};
+
 // All that a brush remembers; copying it is a snapshot.
 struct BrushState {
   TuftState tuft;
   Loading loading;
-  double soak_mm = 0;      // by which the last footprint was swollen
-  bool footprint = false;  // the last pose may be swept from
-  bool timed = false;      // there is a last time
+  Footprint footprint;
+  bool timed = false;  // there is a last time
   Timestamp last{};
 };
 
@@ -39,7 +48,8 @@ std::vector<std::byte> bytes_of(const BrushState& state);
 Result<BrushState> brush_state_of(std::span<const std::byte> bytes);
 
 // What one call of move did. A long frame is solved in several steps: iterations, residual and
-// violation are those of the worst step, energy that of the last.
+// violation are those of the worst step, energy that of the last. Footprints are taken no closer than
+// `footprint_step_s`, so a quick frame may leave its mark with the next.
 struct BrushFrame {
   int steps = 0;
   SolveReport solve;
@@ -77,7 +87,9 @@ class Brush {
   TuftShape shape() const;
 
  private:
-  void away(double dt_s);
+  void away(double elapsed_s);
+  TimedSurface surface() const;
+  void take_footprint();
 
   Tuft tuft_;
   HairTexture texture_;

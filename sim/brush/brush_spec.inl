@@ -6,13 +6,13 @@
 BRUSH_PARAMETER(segments, "count", 3, 8, 6, "segments of the spine")
 BRUSH_PARAMETER(segment_ratio, "1", 0.5, 1, 0.78, "length of a segment over the one above it")
 BRUSH_PARAMETER(tuft_length_mm, "mm", 5, 120, 32, "length of the hair outside the ferrule")
-BRUSH_PARAMETER(root_radius_mm, "mm", 0.5, 25, 3.4, "radius where hair leaves the ferrule")
-BRUSH_PARAMETER(belly_radius_mm, "mm", 0.5, 25, 3.9, "largest radius of the wet, unbent tuft")
+BRUSH_PARAMETER(root_radius_mm, "mm", 0.5, 25, 3.6, "radius where hair leaves the ferrule")
+BRUSH_PARAMETER(belly_radius_mm, "mm", 0.5, 25, 4.2, "largest radius of the wet, unbent tuft")
 BRUSH_PARAMETER(belly_at, "1", 0.05, 0.8, 0.3, "where the belly is: 0 root, 1 tip")
 BRUSH_PARAMETER(taper, "1", 0.6, 3, 1.5, "1 tapers as a cone from belly to tip; more keeps the belly longer")
 BRUSH_PARAMETER(tip_radius_mm, "mm", 0.02, 5, 0.08, "radius at the very tip")
 BRUSH_PARAMETER(lowest_root, "1", 0.1, 0.9, 0.2, "lowest height of the root over the paper, over the length; the hand stops there")
-BRUSH_PARAMETER(contact_share, "1", 0.2, 0.95, 0.6, "shrunk section that the paper stops, over the full one")
+BRUSH_PARAMETER(contact_share, "1", 0.2, 0.95, 0.5, "shrunk section that the paper stops, over the full one")
 BRUSH_PARAMETER(lateral_share, "1", 0.1, 0.9, 0.7, "effective radius of a lateral node over that of its spine node")
 
 // Springs: energy (k/m)|x|^m
@@ -23,8 +23,8 @@ BRUSH_PARAMETER(side_bend_ratio, "1", 1, 20, 2.5, "stiffness against bending alo
 BRUSH_PARAMETER(twist_ratio, "1", 0.05, 20, 0.8, "twist stiffness over bend stiffness; none at the root")
 BRUSH_PARAMETER(stretch_stiffness, "mN/mm", 0.1, 1e4, 35, "of a lateral node's stretch spring at the belly")
 BRUSH_PARAMETER(side_hair_stiffness, "mN mm", 0, 1e5, 60, "of the hair along the sides against a change of slope")
-BRUSH_PARAMETER(spread_press, "1", 0, 3, 0.25, "rest stretch over radius of a submerged, unbent segment")
-BRUSH_PARAMETER(spread_bend, "1", 0, 3, 0.6, "and what a sharp bend adds to it")
+BRUSH_PARAMETER(spread_press, "1", 0, 3, 0.3, "rest stretch over radius of a submerged, unbent segment")
+BRUSH_PARAMETER(spread_bend, "1", 0, 3, 0.9, "and what a sharp bend adds to it")
 BRUSH_PARAMETER(spread_half_bend_rad, "rad", 0.01, 2, 0.35, "bend at which half of that is reached")
 BRUSH_PARAMETER(spread_limit, "1", 0.1, 5, 1.6, "largest stretch over radius")
 
@@ -56,7 +56,8 @@ BRUSH_PARAMETER(streak_wetness, "1", 0, 1, 0.45, "wetness below which streaks op
 
 // Footprint and time
 BRUSH_PARAMETER(cell_mm, "mm", 0.01, 1, 0.05, "cell of the footprint map")
-BRUSH_PARAMETER(longest_step_s, "s", 0.0005, 0.1, 0.004, "a longer frame is solved in steps")
+BRUSH_PARAMETER(longest_step_s, "s", 0.0005, 0.1, 0.002, "a longer frame is solved in steps")
+BRUSH_PARAMETER(footprint_step_s, "s", 0, 0.1, 0.004, "shortest time between two footprints; quicker frames wait")
 BRUSH_PARAMETER(iteration_limit, "count", 1, 200, 20, "of the solver, in one step")
 
 BRUSH_SWITCH(spread, true, "lateral nodes move: the tuft flattens and spreads")

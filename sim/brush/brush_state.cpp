@@ -80,6 +80,12 @@ void vector(Archive& archive, Vector& v) {
   for (Eigen::Index i = 0; i < v.size(); ++i) archive(v[i]);
 }
 
+template <class Archive, class P>
+void pose(Archive& archive, P& p) {
+  vector(archive, p.rotation.coeffs());
+  vector(archive, p.translation);
+}
+
 // Every field, in the order of the structs.
 template <class Archive, class State>
 void walk(Archive& archive, State& state) {
@@ -101,8 +107,7 @@ void walk(Archive& archive, State& state) {
   vector(archive, tuft.plane.facing);
   archive(tuft.plane.lead_mm);
   archive(tuft.in_contact);
-  vector(archive, tuft.paper_from_handle.rotation.coeffs());
-  vector(archive, tuft.paper_from_handle.translation);
+  pose(archive, tuft.paper_from_handle);
   archive(tuft.placed);
   for (auto& patch : state.loading.patches) {
     archive(patch.capacity_ul);
@@ -110,8 +115,11 @@ void walk(Archive& archive, State& state) {
     for (auto& volume : patch.pigment_ul) archive(volume);
   }
   archive(state.loading.endless);
-  archive(state.soak_mm);
-  archive(state.footprint);
+  archive(state.footprint.taken);
+  archive.dynamic(state.footprint.x);
+  pose(archive, state.footprint.paper_from_handle);
+  archive(state.footprint.soak_mm);
+  archive(state.footprint.since_s);
   archive(state.timed);
 }
 

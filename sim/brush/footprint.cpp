@@ -109,7 +109,8 @@ class Stamp {
     const auto cells = static_cast<std::size_t>(frame.columns()) * static_cast<std::size_t>(frame.rows);
     patch_.assign(cells, none);
     inked_.assign(cells, 1);
-    for (const InkLoad& load : loads) streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
+    for (const InkLoad& load : loads)
+      streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
   }
 
   // Fills cells that no later instant has filled.
@@ -158,7 +159,7 @@ void clip(double value, double slope, double& from, double& to) {
   } else if (slope < 0) {
     to = std::min(to, -value / slope);
   } else if (value < 0) {
-    to = from - 1;
+    to = from;
   }
 }
 
@@ -186,11 +187,12 @@ void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_
     const double around_r = corner[t[2]].around - corner[t[0]].around;
     // Cell centres in a row lie in the triangle where s, r and 1 − s − r are all positive; each is a
     // straight line along the row.
-    const int row_end = std::min(frame_.rows - 1, static_cast<int>(std::max({p.y(), p.y() + u.y(), p.y() + v.y()})));
+    const int row_end =
+        std::min(frame_.rows - 1, static_cast<int>(std::max({p.y(), p.y() + u.y(), p.y() + v.y()})));
     const double s_by_x = v.y() / area;
     const double r_by_x = -u.y() / area;
-    for (int row = std::max(0, static_cast<int>(std::min({p.y(), p.y() + u.y(), p.y() + v.y()}))); row <= row_end;
-         ++row) {
+    for (int row = std::max(0, static_cast<int>(std::min({p.y(), p.y() + u.y(), p.y() + v.y()})));
+         row <= row_end; ++row) {
       const double dy = row + 0.5 - p.y();
       const double s0 = (-p.x() * v.y() - dy * v.x()) / area;
       const double r0 = (dy * u.x() + p.x() * u.y()) / area;
@@ -199,7 +201,8 @@ void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_
       clip(s0, s_by_x, from, to);
       clip(r0, r_by_x, from, to);
       clip(1 - s0 - r0, -s_by_x - r_by_x, from, to);
-      const int last = to < 0.5 ? -1 : std::min(frame_.columns() - 1, static_cast<int>(to - 0.5));
+      if (!(from < to)) continue;
+      const int last = to < 0.5 ? -1 : static_cast<int>(to - 0.5);
       const double along_by_x = s_by_x * along_s + r_by_x * along_r;
       const double around_by_x = s_by_x * around_s + r_by_x * around_r;
       const double along_0 = corner[t[0]].along + s0 * along_s + r0 * along_r;
@@ -212,8 +215,8 @@ void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_
         const int patch = patch_at(along, around);
         patch_[cell] = static_cast<std::uint16_t>(patch);
         if (streaky_)
-          inked_[cell] = static_cast<float>(
-              texture_.inked(along, around, static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness)));
+          inked_[cell] = static_cast<float>(texture_.inked(
+              along, around, static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness)));
       }
     }
   }
@@ -238,6 +241,7 @@ void add_contact_time(const Coverage& cover, double duration_s, std::vector<floa
 std::optional<FootprintMap> sweep(const TuftSurface& before, std::span<const TimedSurface> after,
                                   double cell_mm, const HairTexture& texture,
                                   const std::vector<InkLoad>& loads) {
+  if (after.empty()) return std::nullopt;
   const std::vector<Instant> all = instants(before, after);
   const std::optional<CoverageFrame> frame = frame_of(all, cell_mm);
   if (!frame) return std::nullopt;

@@ -17,8 +17,8 @@ class HairTexture {
   // Below it streaks open.
   double streak_wetness() const { return streak_wetness_; }
 
-  // Share of the hair at (along, around in turns from the lateral line, not below −1) that still leaves ink at this wetness: 1 for a wet tuft,
-  // falling to 0 bundle by bundle below `streak_wetness`.
+  // Share of the hair at (along, around in turns from the lateral line, not below −1) that still leaves ink
+  // at this wetness: 1 for a wet tuft, falling to 0 bundle by bundle below `streak_wetness`.
   double inked(double along, double around, double wetness) const;
 
  private:

@@ -81,7 +81,7 @@ SqpResult minimise(const Program& program, Variables& x, SquareMatrix& hessian,
     result.residual = curved.cwiseAbs().cwiseProduct(program.unit).maxCoeff() / reference;
     const double energy = std::max(program.small_energy, std::abs(at.value));
     if (result.residual <= limits.residual && result.violation <= program.small_violation &&
-        slackness <= 1e-4 * energy && step.d.dot(curved) <= 2e-4 * energy) {
+        slackness <= 1e-4 * energy && step.d.dot(curved) <= 2e-6 * energy) {
       result.converged = true;
       break;
     }

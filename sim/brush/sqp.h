@@ -9,7 +9,7 @@ namespace fude {
 
 struct SqpLimits {
   int iterations = 20;
-  double residual = 3e-5;  // of the Karush-Kuhn-Tucker conditions, relative
+  double residual = 1e-5;  // of the Karush-Kuhn-Tucker conditions, relative
 };
 
 struct SqpResult {

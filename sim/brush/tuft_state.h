@@ -27,7 +27,7 @@ struct TuftState {
   // lagging behind what was last solved.
   Multipliers reactions;
   PerNode<double> submerged{};
-  PerNode<double> minor_mm{};           // c
+  PerNode<double> minor_mm{};  // c
   PerNode<std::array<Touch, 3>> touches{};
   BlockingPlane plane;
   bool in_contact = false;

@@ -53,7 +53,7 @@ void add_half(const Station& s, double major, double first, double last, Submerg
   const double reach = elementary::square_root(level * level + upright * upright);
   if (reach == 0) return;
   double deepest = elementary::arctangent(upright, -level);
-  if (deepest < first) deepest += 2 * pi;
+  if (deepest < 0.5 * (first + last) - pi) deepest += 2 * pi;  // the turn nearest to this half
   const double clamped = std::clamp(deepest, first, last);
   const auto [sine, cosine] = elementary::sine_cosine(clamped);
   const double depth = -(s.centre.z() + level * cosine - upright * sine);
@@ -139,12 +139,12 @@ void append_tip(const Station& tip, Contact& contact) {
 
 }  // namespace
 
-TuftSurface surface_of(const Tuft& tuft, const TuftState& state) {
-  const Skeleton skeleton = pose_skeleton(tuft, state.x, state.paper_from_handle);
+TuftSurface surface_of(const Tuft& tuft, const Variables& x, const Pose<Paper, Handle>& paper_from_handle) {
+  const Skeleton skeleton = pose_skeleton(tuft, x, paper_from_handle);
   const Layout layout{tuft.segments};
   const int n = tuft.segments;
   const auto stretch = [&](int node, int side) {
-    return node > 0 && node < n ? state.x[layout.stretch(node, side)] : 0.0;
+    return node > 0 && node < n ? x[layout.stretch(node, side)] : 0.0;
   };
   const auto tangent = [&](int node) -> Vector3d {
     if (node == 0) return skeleton.along[0];

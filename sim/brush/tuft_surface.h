@@ -6,8 +6,9 @@
 #include <array>
 #include <vector>
 
+#include "signal/pose.h"
+#include "sim/brush/skeleton.h"
 #include "sim/brush/tuft.h"
-#include "sim/brush/tuft_state.h"
 
 namespace fude {
 
@@ -26,7 +27,7 @@ struct Station {
 
 using TuftSurface = std::vector<Station>;  // root to tip; as many for every state of one tuft
 
-TuftSurface surface_of(const Tuft& tuft, const TuftState& state);
+TuftSurface surface_of(const Tuft& tuft, const Variables& x, const Pose<Paper, Handle>& paper_from_handle);
 
 // The surface with the ink that clings to it: every section swollen by `by_mm` (Chu 2.7.2).
 TuftSurface swollen(TuftSurface surface, double by_mm);
