@@ -33,7 +33,15 @@ void GlBuffer::bind_storage(unsigned index) const { glBindBufferBase(GL_SHADER_S
 
 void GlBuffer::bind_uniforms(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, id_); }
 
+void GlBuffer::clear(std::size_t offset, std::size_t count) const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, id_);
+  glClearBufferSubData(GL_COPY_WRITE_BUFFER, GL_R32UI, signed_size(offset), signed_size(count),
+                       GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
 void GlBuffer::write(std::size_t offset, std::span<const std::byte> from) const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id_);
   glBufferSubData(GL_COPY_WRITE_BUFFER, signed_size(offset), signed_size(from.size()), from.data());
 }

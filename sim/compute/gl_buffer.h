@@ -33,6 +33,7 @@ class GlBuffer {
   void bind_storage(unsigned index) const;
   void bind_uniforms(unsigned index) const;
 
+  void clear(std::size_t offset, std::size_t count) const;
   void write(std::size_t offset, std::span<const std::byte> from) const;
   // Waits for the card.
   void read(std::size_t offset, std::span<std::byte> to) const;

@@ -128,6 +128,20 @@ GlContext::~GlContext() {
   eglDestroyContext(display_, context_);
 }
 
+GlContext::Use::Use(const GlContext& context)
+    : own_display_(context.display_),
+      display_(eglGetCurrentDisplay()),
+      draw_(eglGetCurrentSurface(EGL_DRAW)),
+      read_(eglGetCurrentSurface(EGL_READ)),
+      context_(eglGetCurrentContext()) {
+  context.make_current();
+}
+
+GlContext::Use::~Use() {
+  const bool none = context_ == EGL_NO_CONTEXT;
+  eglMakeCurrent(none ? own_display_ : display_, draw_, read_, context_);
+}
+
 void GlContext::make_current() const {
   eglBindAPI(EGL_OPENGL_API);
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);

@@ -29,6 +29,22 @@ class GlContext {
   void make_current() const;
   void release() const;
 
+  // Current while this lives, on the thread that made it; then what was current before is so again.
+  class Use {
+   public:
+    explicit Use(const GlContext& context);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    void* own_display_;
+    void* display_;
+    void* draw_;
+    void* read_;
+    void* context_;
+  };
+
   // GL_RENDERER, as the driver words it.
   const std::string& renderer() const { return renderer_; }
 

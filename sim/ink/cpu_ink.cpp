@@ -1,7 +1,6 @@
 #include "sim/ink/cpu_ink.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/ink/kernels/lang_cpp.h"
 #include "sim/ink/sheet_state.h"
@@ -16,10 +15,6 @@ namespace {
 #include "sim/ink/kernels/deposit.k"
 // clang-format on
 
-int cells_in(double mm, double cell_mm) {
-  return std::max(1, static_cast<int>(std::ceil(mm / cell_mm - 1e-9)));
-}
-
 Population population(const PlaneView& view, std::size_t first, int x, int y) {
   const auto f = [&](std::size_t i) { return view.cells(first + i, y)[x]; };
   return {f(tile::rest), f(tile::e),  f(tile::n),  f(tile::w), f(tile::s),
@@ -30,8 +25,8 @@ Population population(const PlaneView& view, std::size_t first, int x, int y) {
 
 CpuInk::CpuInk(const InkSetup& setup, InstructionSet set)
     : setup_(setup),
-      columns_(cells_in(setup.width_mm, setup.cell_mm)),
-      rows_(cells_in(setup.height_mm, setup.cell_mm)),
+      columns_(cells_across(setup.width_mm, setup.cell_mm)),
+      rows_(cells_across(setup.height_mm, setup.cell_mm)),
       numbers_(lattice_numbers(setup.paper, setup.cell_mm)),
       threads_(setup.threads) {
   const PaperTexture texture(setup.paper, setup.seed, setup.cell_mm, columns_, rows_, setup.flow);
@@ -94,7 +89,7 @@ Exchange CpuInk::deposit(const Deposit& what) {
 }
 
 void CpuInk::dry_sheet() {
-  water_evaporated_ += sum_layers(*lattice_).water_left;
+  water_evaporated_ += sum_layers(view_of(*lattice_)).water_left;
   const std::size_t flowing = static_cast<std::size_t>(lattice_->parity()) * tile::flowing_planes;
   for (AwakeTile& t : lattice_->awake()) {
     for (int y = 0; y < tile::side; ++y) {
@@ -126,7 +121,7 @@ void CpuInk::step() {
 std::vector<Exchange> CpuInk::collect() { return std::exchange(ready_, {}); }
 
 InkTotals CpuInk::totals() const {
-  InkTotals t = sum_layers(*lattice_);
+  InkTotals t = sum_layers(view_of(*lattice_));
   t.water_deposited = water_deposited_ * ul_in_cell();
   t.water_evaporated = water_evaporated_ * ul_in_cell();
   t.water_left *= ul_in_cell();
@@ -161,17 +156,7 @@ bool CpuInk::still() const {
 }
 
 InkRegion CpuInk::read(const CellRect& wanted) const {
-  InkRegion region;
-  region.rect.left = std::clamp(wanted.left, 0, columns_);
-  region.rect.bottom = std::clamp(wanted.bottom, 0, rows_);
-  region.rect.columns =
-      std::clamp(wanted.left + wanted.columns, region.rect.left, columns_) - region.rect.left;
-  region.rect.rows = std::clamp(wanted.bottom + wanted.rows, region.rect.bottom, rows_) - region.rect.bottom;
-  const std::size_t cells =
-      static_cast<std::size_t>(region.rect.columns) * static_cast<std::size_t>(region.rect.rows);
-  region.flow_water.resize(cells);
-  region.surface_water.resize(cells);
-  region.pigment.resize(cells);
+  InkRegion region = blank_region(wanted, columns_, rows_);
   const auto per_area = static_cast<float>(setup_.paper.capacity);
   for (const AwakeTile& t : lattice_->awake()) read_tile(t, lattice_->parity(), per_area, region);
   for (const auto& [place, pigment] : lattice_->asleep())
@@ -180,7 +165,7 @@ InkRegion CpuInk::read(const CellRect& wanted) const {
 }
 
 InkSnapshot CpuInk::snapshot() const {
-  return {save_tiles(*lattice_),
+  return {save_tiles(view_of(*lattice_)),
           steps_,
           water_deposited_,
           water_evaporated_,
@@ -199,6 +184,6 @@ void CpuInk::restore(const InkSnapshot& snapshot) {
   ready_ = snapshot.ready;
 }
 
-std::uint64_t CpuInk::hash() const { return hash_tiles(save_tiles(*lattice_)); }
+std::uint64_t CpuInk::hash() const { return hash_tiles(save_tiles(view_of(*lattice_))); }
 
 }  // namespace fude

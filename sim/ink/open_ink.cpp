@@ -1,6 +1,9 @@
 #include <cmath>
 
 #include "sim/ink/cpu_ink.h"
+#ifdef FUDE_OPENGL
+#include "sim/ink/gl_ink.h"
+#endif
 #include "sim/ink/ink.h"
 
 namespace fude {
@@ -20,8 +23,13 @@ Result<std::unique_ptr<Ink>> open_ink(const InkSetup& setup) {
     return failure(Fault::usage,
                    "the sheet must have 1 to 65536 cells a side; make it smaller or the cells larger");
   if (setup.threads < 1 || setup.threads > 1024) return failure(Fault::usage, "threads must be 1 to 1024");
-  if (setup.backend == InkBackend::gl)
-    return failure(Fault::unsupported, "this build has no OpenGL ink; use --backend cpu");
+  if (setup.backend == InkBackend::gl) {
+#ifdef FUDE_OPENGL
+    return open_gl_ink(setup);
+#else
+    return failure(Fault::unsupported, "this build has no OpenGL ink: use --backend cpu");
+#endif
+  }
   const auto set = choose_instruction_set(setup.instruction_set);
   if (!set) return tl::unexpected(set.error());
   return std::make_unique<CpuInk>(setup, *set);

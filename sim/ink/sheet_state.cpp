@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace fude {
 namespace {
@@ -90,21 +91,40 @@ void load(const InkSnapshot::Tile& saved, int parity, AwakeTile& tile) {
 
 }  // namespace
 
-InkTotals sum_layers(Lattice& lattice) {
+InkTotals sum_layers(const SheetView& sheet) {
   InkTotals totals;
-  for (const AwakeTile& t : lattice.awake()) {
+  for (const AwakeTile& t : sheet.awake) {
     for (std::size_t f = tile::rest; f <= tile::se; ++f)
-      totals.water_left += sum(t.view, flowing(lattice.parity(), f));
+      totals.water_left += sum(t.view, flowing(sheet.parity, f));
     totals.water_left += sum(t.view, tile::still_begin + tile::surface);
     for (std::size_t c = 0; c < mass_planes; ++c) {
-      totals.pigment_flow[c] += sum(t.view, flowing(lattice.parity(), tile::mass + c));
+      totals.pigment_flow[c] += sum(t.view, flowing(sheet.parity, tile::mass + c));
       totals.pigment_surface[c] += sum(t.view, tile::still_begin + tile::surface_mass + c);
       totals.pigment_fixed[c] += sum(t.view, tile::still_begin + tile::fixed_mass + c);
     }
   }
-  for (const auto& [place, pigment] : lattice.asleep())
+  for (const auto& [place, pigment] : sheet.asleep)
     for (std::size_t c = 0; c < mass_planes; ++c) totals.pigment_fixed[c] += sum(pigment, c);
   return totals;
+}
+
+int cells_across(double mm, double cell_mm) {
+  return std::max(1, static_cast<int>(std::ceil(mm / cell_mm - 1e-9)));
+}
+
+InkRegion blank_region(const CellRect& wanted, int columns, int rows) {
+  InkRegion region;
+  region.rect.left = std::clamp(wanted.left, 0, columns);
+  region.rect.bottom = std::clamp(wanted.bottom, 0, rows);
+  region.rect.columns =
+      std::clamp(wanted.left + wanted.columns, region.rect.left, columns) - region.rect.left;
+  region.rect.rows = std::clamp(wanted.bottom + wanted.rows, region.rect.bottom, rows) - region.rect.bottom;
+  const std::size_t cells =
+      static_cast<std::size_t>(region.rect.columns) * static_cast<std::size_t>(region.rect.rows);
+  region.flow_water.resize(cells);
+  region.surface_water.resize(cells);
+  region.pigment.resize(cells);
+  return region;
 }
 
 void read_tile(const AwakeTile& t, int parity, float per_area, InkRegion& region) {
@@ -133,10 +153,10 @@ void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_
     }
 }
 
-std::vector<InkSnapshot::Tile> save_tiles(Lattice& lattice) {
+std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet) {
   std::vector<InkSnapshot::Tile> tiles;
-  for (const AwakeTile& t : lattice.awake()) {
-    InkSnapshot::Tile whole = save(t, lattice.parity());
+  for (const AwakeTile& t : sheet.awake) {
+    InkSnapshot::Tile whole = save(t, sheet.parity);
     if (wet(whole)) {
       tiles.push_back(std::move(whole));
       continue;
@@ -144,7 +164,7 @@ std::vector<InkSnapshot::Tile> save_tiles(Lattice& lattice) {
     FixedPigment fixed = fixed_of(t.view);
     if (any(fixed)) tiles.push_back({t.place.column, t.place.row, false, std::move(fixed)});
   }
-  for (const auto& [place, pigment] : lattice.asleep())
+  for (const auto& [place, pigment] : sheet.asleep)
     tiles.push_back({place.column, place.row, false, pigment});
   std::ranges::sort(tiles, [](const auto& a, const auto& b) {
     return TilePlace{a.row, a.column} < TilePlace{b.row, b.column};
@@ -161,6 +181,19 @@ void load_tiles(const std::vector<InkSnapshot::Tile>& tiles, Lattice& lattice) {
     else
       lattice.lay(place, saved.planes);
   }
+}
+
+void dry(InkSnapshot::Tile& tile) {
+  if (!tile.wet) return;
+  const auto flow = [&](std::size_t p) { return tile.planes.data() + p * tile::cells; };
+  const auto still = [&](std::size_t p) { return flow(tile::flowing_planes + p); };
+  FixedPigment fixed(mass_planes * tile::cells);
+  for (std::size_t c = 0; c < mass_planes; ++c)
+    for (std::size_t i = 0; i < tile::cells; ++i)
+      fixed[c * tile::cells + i] =
+          still(tile::fixed_mass + c)[i] + (flow(tile::mass + c)[i] + still(tile::surface_mass + c)[i]);
+  tile.planes = std::move(fixed);
+  tile.wet = false;
 }
 
 std::uint64_t hash_tiles(const std::vector<InkSnapshot::Tile>& tiles) {

@@ -1,0 +1,354 @@
+#include "sim/ink/gl_tiles.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace fude {
+namespace {
+
+constexpr std::size_t plane_bytes = tile::cells * sizeof(float);
+constexpr std::size_t population_planes = 9;
+constexpr std::size_t mass_planes = tile::flowing_planes - population_planes;
+constexpr std::size_t still_count = tile::still_planes + 2;  // and what the last step noted (gl_tiles.inc)
+constexpr std::size_t first_slots = 64;
+constexpr int outside = 0;  // the slot that stands for what is off the sheet or asleep: dry and closed
+
+// A report of the water is heard so many steps after it was sent, and only one is under way; so a front is
+// heard of at most 2 · report_age steps late, and has come at most that many cells nearer.
+constexpr std::uint64_t report_age = 3;
+static_assert(2 * report_age < wet_margin);
+constexpr std::uint64_t steps_between_sweeps = 32;
+
+// As gl_tally.comp has it.
+struct Column {
+  double evaporated;
+  std::uint32_t wet;
+  std::uint32_t unused;
+};
+constexpr std::uint32_t near_bottom = 1;
+constexpr std::uint32_t near_top = 2;
+constexpr std::uint32_t anywhere = 4;
+constexpr std::uint16_t every_edge = (1U << tile::neighbourhood) - 1;
+
+TilePlace beside(TilePlace place, std::size_t i) {
+  return {place.row + static_cast<int>(i / 3) - 1, place.column + static_cast<int>(i % 3) - 1};
+}
+
+std::size_t offset(int slot, std::size_t planes, std::size_t plane = 0) {
+  return (static_cast<std::size_t>(slot) * planes + plane) * plane_bytes;
+}
+
+template <class T>
+T require(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return std::move(*result);
+}
+
+std::span<const std::byte> as_bytes(const float* first, std::size_t count) {
+  return std::as_bytes(std::span(first, count));
+}
+
+}  // namespace
+
+GlTiles::GlTiles(const PaperTexture& texture, int columns, int rows)
+    : texture_(texture), columns_(columns), rows_(rows) {}
+
+Result<GlTiles> GlTiles::make(const LatticeNumbers& numbers, const PaperTexture& texture, int columns,
+                              int rows) {
+  GlTiles tiles(texture, columns, rows);
+  auto block = GlBuffer::make((sizeof(LatticeNumbers) + 15) / 16 * 16);
+  if (!block) return tl::unexpected(block.error());
+  tiles.numbers_ = std::move(*block);
+  tiles.numbers_.write(0, std::as_bytes(std::span(&numbers, 1)));
+  if (auto grown = tiles.grow(first_slots); !grown) return tl::unexpected(grown.error());
+  tiles.free_.pop_back();
+  const std::vector<float> blocking(tile::cells, tile::closed_blocking);
+  const std::vector<float> grain(tile::cells, tile::closed_grain);
+  tiles.paper_.write(offset(outside, tile::paper_planes, tile::blocking), bytes_of(blocking));
+  tiles.paper_.write(offset(outside, tile::paper_planes, tile::grain), bytes_of(grain));
+  return tiles;
+}
+
+bool GlTiles::on_sheet(TilePlace place) const {
+  return place.row >= 0 && place.column >= 0 && place.row < tiles_across(rows_) &&
+         place.column < tiles_across(columns_);
+}
+
+Result<void> GlTiles::grow(std::size_t slots) {
+  GLint64 most = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+  if (slots * still_count * plane_bytes > static_cast<std::size_t>(most))
+    return failure(Fault::unsupported,
+                   "the graphics card has no room for so much wet paper: use --backend cpu or larger cells");
+  const auto enlarge = [&](GlBuffer& buffer, std::size_t bytes_a_slot) -> Result<void> {
+    auto larger = GlBuffer::make(slots * bytes_a_slot);
+    if (!larger) return tl::unexpected(larger.error());
+    if (slots_ > 0) buffer.copy_to(*larger, 0, 0, slots_ * bytes_a_slot);
+    buffer = std::move(*larger);
+    return {};
+  };
+  for (int parity : {0, 1}) {
+    const auto p = static_cast<std::size_t>(parity);
+    if (auto done = enlarge(populations_[p], population_planes * plane_bytes); !done) return done;
+    if (auto done = enlarge(masses_[p], mass_planes * plane_bytes); !done) return done;
+  }
+  if (auto done = enlarge(still_, still_count * plane_bytes); !done) return done;
+  if (auto done = enlarge(paper_, tile::paper_planes * plane_bytes); !done) return done;
+  if (auto done = enlarge(column_sums_, tile::side * sizeof(Column)); !done) return done;
+  if (auto done = enlarge(neighbours_, tile::neighbourhood * sizeof(std::int32_t)); !done) return done;
+  neighbours_written_ = false;
+  for (std::size_t slot = slots; slot-- > slots_;) free_.push_back(static_cast<int>(slot));
+  slots_ = slots;
+  return {};
+}
+
+int GlTiles::free_slot() {
+  if (free_.empty()) require(grow(2 * slots_).map([] { return 0; }));
+  const int slot = free_.back();
+  free_.pop_back();
+  return slot;
+}
+
+GlTiles::Awake& GlTiles::wake(TilePlace place) {
+  if (const auto found = awake_.find(place); found != awake_.end()) return found->second;
+  const int slot = free_slot();
+  const auto p = static_cast<std::size_t>(parity_);
+  populations_[p].clear(offset(slot, population_planes), population_planes * plane_bytes);
+  masses_[p].clear(offset(slot, mass_planes), mass_planes * plane_bytes);
+  still_.clear(offset(slot, still_count), still_count * plane_bytes);
+  std::vector<float> block(tile::planes * tile::cells);
+  const PlaneView view{block.data(), tile::side, tile::cells};
+  texture_.fill(place.column * tile::side, place.row * tile::side, view);
+  paper_.write(offset(slot, tile::paper_planes),
+               as_bytes(view.cells(tile::paper_begin, 0), tile::paper_planes * tile::cells));
+  if (sleepers_.contains(place)) collect_sleepers();
+  if (const auto kept = asleep_.find(place); kept != asleep_.end()) {
+    put_fixed(slot, kept->second);
+    asleep_.erase(kept);
+  }
+  neighbours_written_ = false;
+  return awake_[place] = {slot, 0, steps_};
+}
+
+void GlTiles::put_fixed(int slot, const FixedPigment& pigment) {
+  std::vector<float> block(tile::planes * tile::cells);
+  const PlaneView view{block.data(), tile::side, tile::cells};
+  lay_fixed(view, 0, pigment);
+  still_.write(offset(slot, still_count, tile::fixed_mass),
+               as_bytes(view.cells(tile::still_begin + tile::fixed_mass, 0), 4 * tile::cells));
+  masses_[static_cast<std::size_t>(parity_)].write(offset(slot, mass_planes, tile::fixed_ink - tile::mass),
+                                                   as_bytes(view.cells(tile::fixed_ink, 0), tile::cells));
+}
+
+int GlTiles::pour(TilePlace place) {
+  for (std::size_t i = 0; i < tile::neighbourhood; ++i)
+    if (on_sheet(beside(place, i))) wake(beside(place, i));
+  Awake& poured = awake_.at(place);
+  poured.wet = every_edge;
+  poured.since = steps_;
+  return poured.slot;
+}
+
+void GlTiles::step(const GlInkPrograms& programs) {
+  if (report_ && steps_ >= report_->step + report_age) {
+    hear(*report_);
+    report_.reset();
+    wake_where_water_comes();
+    if (steps_ % steps_between_sweeps <= report_age) sleep_where_none_can_come();
+  }
+  if (!neighbours_written_) write_neighbours();
+  const auto now = static_cast<std::size_t>(parity_);
+  numbers_.bind_uniforms(0);
+  populations_[now].bind_storage(0);
+  populations_[1 - now].bind_storage(1);
+  masses_[now].bind_storage(2);
+  masses_[1 - now].bind_storage(3);
+  still_.bind_storage(4);
+  paper_.bind_storage(5);
+  neighbours_.bind_storage(6);
+  column_sums_.bind_storage(7);
+  if (!awake_.empty()) {
+    const auto count = static_cast<std::uint32_t>(awake_.size());
+    programs.step.run(tile::cells / 64, count);
+    programs.tally.set("count", static_cast<int>(count) * tile::side);
+    programs.tally.run((count * tile::side + 63) / 64);
+  }
+  parity_ = 1 - parity_;
+  ++steps_;
+  if (!report_)
+    report_ = {steps_, require(GlReadBack::begin(column_sums_, 0, slots_ * tile::side * sizeof(Column)))};
+}
+
+std::uint16_t GlTiles::wet_bits(std::span<const std::byte> columns, int slot) const {
+  unsigned left = 0;
+  unsigned middle = 0;
+  unsigned right = 0;
+  for (int x = 0; x < tile::side; ++x) {
+    Column column;
+    std::memcpy(&column,
+                columns.data() + (static_cast<std::size_t>(slot) * tile::side + static_cast<std::size_t>(x)) *
+                                     sizeof(Column),
+                sizeof column);
+    middle |= column.wet;
+    if (x < wet_margin) left |= column.wet;
+    if (x >= tile::side - wet_margin) right |= column.wet;
+  }
+  const auto bit = [](unsigned bits, std::uint32_t where, unsigned neighbour) {
+    return static_cast<std::uint16_t>(((bits & where) != 0 ? 1U : 0U) << neighbour);
+  };
+  return static_cast<std::uint16_t>(
+      bit(left, near_bottom, 0) | bit(middle, near_bottom, 1) | bit(right, near_bottom, 2) |
+      bit(left, anywhere, 3) | bit(middle, anywhere, 4) | bit(right, anywhere, 5) | bit(left, near_top, 6) |
+      bit(middle, near_top, 7) | bit(right, near_top, 8));
+}
+
+void GlTiles::hear(const Report& report) {
+  const std::vector<std::byte> columns = report.columns.collect();
+  for (auto& [place, t] : awake_)
+    if (t.since < report.step) t.wet = wet_bits(columns, t.slot);
+}
+
+void GlTiles::wake_where_water_comes() {
+  std::vector<TilePlace> reached;
+  for (const auto& [place, t] : awake_)
+    for (std::size_t i = 0; i < tile::neighbourhood; ++i)
+      if ((t.wet >> i & 1) != 0 && on_sheet(beside(place, i))) reached.push_back(beside(place, i));
+  for (TilePlace place : reached) wake(place);
+}
+
+// A dry tile may sleep only when no neighbour's edge beside it is wet.
+void GlTiles::sleep_where_none_can_come() {
+  std::map<TilePlace, bool> needed;
+  for (const auto& [place, t] : awake_)
+    for (std::size_t i = 0; i < tile::neighbourhood; ++i)
+      if ((t.wet >> i & 1) != 0) needed[beside(place, i)] = true;
+  collect_sleepers();
+  for (auto at = awake_.begin(); at != awake_.end();) {
+    if (needed.contains(at->first)) {
+      ++at;
+      continue;
+    }
+    fall_asleep(at->first, at->second.slot);
+    at = awake_.erase(at);
+    neighbours_written_ = false;
+  }
+}
+
+void GlTiles::fall_asleep(TilePlace place, int slot) {
+  sleepers_[place] =
+      require(GlReadBack::begin(still_, offset(slot, still_count, tile::fixed_mass), 4 * plane_bytes));
+  free_.push_back(slot);
+}
+
+void GlTiles::collect_sleepers() {
+  for (const auto& [place, back] : sleepers_) {
+    const std::vector<std::byte> bytes = back.collect();
+    FixedPigment pigment(4 * tile::cells);
+    std::memcpy(pigment.data(), bytes.data(), bytes.size());
+    if (std::ranges::any_of(pigment, [](float m) { return m != 0; })) asleep_[place] = std::move(pigment);
+  }
+  sleepers_.clear();
+}
+
+void GlTiles::write_neighbours() {
+  std::vector<std::int32_t> slots;
+  slots.reserve(awake_.size() * tile::neighbourhood);
+  for (const auto& [place, t] : awake_)
+    for (std::size_t i = 0; i < tile::neighbourhood; ++i) {
+      const auto found = awake_.find(beside(place, i));
+      slots.push_back(found == awake_.end() ? outside : found->second.slot);
+    }
+  neighbours_.write(0, bytes_of(slots));
+  neighbours_written_ = true;
+}
+
+void GlTiles::bind_for_deposit() const {
+  numbers_.bind_uniforms(0);
+  populations_[static_cast<std::size_t>(parity_)].bind_storage(0);
+  still_.bind_storage(4);
+}
+
+double GlTiles::evaporated() const {
+  std::vector<Column> columns(slots_ * tile::side);
+  column_sums_.read(0, std::as_writable_bytes(std::span(columns)));
+  double sum = 0;
+  for (const Column& column : columns) sum += column.evaporated;
+  return sum;
+}
+
+bool GlTiles::still() const {
+  std::vector<std::byte> columns(slots_ * tile::side * sizeof(Column));
+  column_sums_.read(0, columns);
+  return std::ranges::none_of(awake_, [&](const auto& entry) {
+    const Awake& t = entry.second;
+    const std::uint16_t wet = t.since < steps_ ? wet_bits(columns, t.slot) : t.wet;
+    return (wet >> tile::own & 1) != 0;
+  });
+}
+
+TileCopies GlTiles::copies(const CellRect& rect) const {
+  std::vector<std::pair<TilePlace, Awake>> wanted;
+  for (const auto& [place, t] : awake_) {
+    const int x = place.column * tile::side;
+    const int y = place.row * tile::side;
+    if (x < rect.left + rect.columns && x + tile::side > rect.left && y < rect.bottom + rect.rows &&
+        y + tile::side > rect.bottom)
+      wanted.emplace_back(place, t);
+  }
+  constexpr std::size_t view_planes = tile::still_begin + tile::still_planes;
+  TileCopies copies{std::vector<float>(wanted.size() * view_planes * tile::cells), {}};
+  if (wanted.empty()) return copies;
+  const GlBuffer staging = require(GlBuffer::make(wanted.size() * view_planes * plane_bytes));
+  const auto p = static_cast<std::size_t>(parity_);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto& [place, t] = wanted[i];
+    const std::size_t to = i * view_planes * plane_bytes;
+    populations_[p].copy_to(staging, offset(t.slot, population_planes), to, population_planes * plane_bytes);
+    masses_[p].copy_to(staging, offset(t.slot, mass_planes), to + tile::mass * plane_bytes,
+                       mass_planes * plane_bytes);
+    still_.copy_to(staging, offset(t.slot, still_count), to + tile::still_begin * plane_bytes,
+                   tile::still_planes * plane_bytes);
+    copies.tiles.push_back(
+        {place, {copies.memory.data() + i * view_planes * tile::cells, tile::side, tile::cells}, t.wet});
+  }
+  staging.read(0, std::as_writable_bytes(std::span(copies.memory)));
+  return copies;
+}
+
+const std::map<TilePlace, FixedPigment>& GlTiles::asleep() {
+  collect_sleepers();
+  return asleep_;
+}
+
+void GlTiles::clear() {
+  for (const auto& [place, t] : awake_) free_.push_back(t.slot);
+  awake_.clear();
+  asleep_.clear();
+  sleepers_.clear();
+  report_.reset();
+  neighbours_written_ = false;
+}
+
+void GlTiles::load(const InkSnapshot::Tile& saved) {
+  const TilePlace place{saved.row, saved.column};
+  if (!saved.wet) {
+    if (const auto found = awake_.find(place); found != awake_.end())
+      put_fixed(found->second.slot, saved.planes);
+    else
+      asleep_[place] = saved.planes;
+    return;
+  }
+  const int slot = pour(place);
+  const auto p = static_cast<std::size_t>(parity_);
+  const auto planes = [&](std::size_t first, std::size_t count) {
+    return as_bytes(saved.planes.data() + first * tile::cells, count * tile::cells);
+  };
+  populations_[p].write(offset(slot, population_planes), planes(0, population_planes));
+  masses_[p].write(offset(slot, mass_planes), planes(tile::mass, mass_planes));
+  still_.write(offset(slot, still_count), planes(tile::flowing_planes, tile::still_planes));
+}
+
+}  // namespace fude
