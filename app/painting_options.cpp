@@ -93,7 +93,7 @@ Result<ReplaySettings> PaintingOptions::settings() const {
   setup.flow = flow == "on";
   setup.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   setup.instruction_set = instruction_set_named(isa);
-  setup.backend = backend == "gl" ? InkBackend::gl : InkBackend::cpu;
+  setup.backend = backend == "auto" ? best_ink_backend() : backend == "gl" ? InkBackend::gl : InkBackend::cpu;
   settings.palette.pigments = {pigments()[0]};
   return settings;
 }

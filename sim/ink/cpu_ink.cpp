@@ -135,17 +135,9 @@ InkTotals CpuInk::totals() const {
 }
 
 CellRect CpuInk::active_rect() const {
-  if (lattice_->awake().empty()) return {};
-  TilePlace low = lattice_->awake().front().place;
-  TilePlace high = low;
-  for (const AwakeTile& awake : lattice_->awake()) {
-    low = {std::min(low.row, awake.place.row), std::min(low.column, awake.place.column)};
-    high = {std::max(high.row, awake.place.row), std::max(high.column, awake.place.column)};
-  }
-  CellRect rect{low.column * tile::side, low.row * tile::side, 0, 0};
-  rect.columns = std::min((high.column + 1) * tile::side, columns_) - rect.left;
-  rect.rows = std::min((high.row + 1) * tile::side, rows_) - rect.bottom;
-  return rect;
+  std::vector<TilePlace> places;
+  for (const AwakeTile& t : lattice_->awake()) places.push_back(t.place);
+  return rect_around(places, columns_, rows_);
 }
 
 std::size_t CpuInk::active_cells() const { return lattice_->awake().size() * tile::cells; }

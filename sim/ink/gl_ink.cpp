@@ -74,7 +74,8 @@ class GlInk final : public Ink {
   double cell_mm() const override { return setup_.cell_mm; }
   double step_s() const override { return step_seconds(setup_.cell_mm); }
   std::uint64_t steps() const override { return steps_; }
-  std::size_t active_cells() const override { return state_->tiles.awake() * tile::cells; }
+  std::size_t active_cells() const override { return state_->tiles.places().size() * tile::cells; }
+  CellRect active_rect() const override { return rect_around(state_->tiles.places(), columns_, rows_); }
 
   void apply(const InkEvent& event) override {
     const GlContext::Use use(context_);

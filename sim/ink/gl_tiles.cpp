@@ -271,6 +271,12 @@ void GlTiles::bind_for_deposit() const {
   still_.bind_storage(4);
 }
 
+std::vector<TilePlace> GlTiles::places() const {
+  std::vector<TilePlace> places;
+  for (const auto& entry : awake_) places.push_back(entry.first);
+  return places;
+}
+
 double GlTiles::evaporated() const {
   std::vector<Column> columns(slots_ * tile::side);
   column_sums_.read(0, std::as_writable_bytes(std::span(columns)));

@@ -36,7 +36,8 @@ class GlTiles {
   // Binds what the deposit program reads and writes of the tiles.
   void bind_for_deposit() const;
 
-  std::size_t awake() const { return awake_.size(); }
+  // Of the awake tiles, ascending.
+  std::vector<TilePlace> places() const;
   // Water evaporated since the beginning, in saturated cells. Waits for the card.
   double evaporated() const;
   // No water on any tile. Waits for the card.

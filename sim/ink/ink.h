@@ -21,6 +21,9 @@ namespace fude {
 
 enum class InkBackend { cpu, gl };
 
+// OpenGL 4.3 or later on a graphics card, never a software renderer; else the processor.
+InkBackend best_ink_backend();
+
 struct InkSetup {
   PaperSpec paper;
   double width_mm = 210;
@@ -101,7 +104,7 @@ class Ink {
   virtual std::size_t active_cells() const = 0;  // of the tiles that are stepped
   // The smallest rectangle around those tiles, cut to the sheet; no columns where there are none.
   virtual CellRect active_rect() const = 0;
-  virtual bool still() const = 0;                // no water anywhere: a step would change nothing
+  virtual bool still() const = 0;  // no water anywhere: a step would change nothing
 
   // rect is cut to the sheet. 24 bytes a cell: read large sheets in strips.
   virtual InkRegion read(const CellRect& rect) const = 0;

@@ -16,6 +16,13 @@ bool fits(double mm, double cell_mm) { return std::isfinite(mm) && mm > 0 && mm 
 
 }  // namespace
 
+InkBackend best_ink_backend() {
+#ifdef FUDE_OPENGL
+  if (graphics_card_exists()) return InkBackend::gl;
+#endif
+  return InkBackend::cpu;
+}
+
 Result<std::unique_ptr<Ink>> open_ink(const InkSetup& setup) {
   if (!(setup.cell_mm >= 0.02 && setup.cell_mm <= 1))
     return failure(Fault::usage, "the cells of the lattice must be 0.02 to 1 mm");

@@ -127,6 +127,20 @@ InkRegion blank_region(const CellRect& wanted, int columns, int rows) {
   return region;
 }
 
+CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows) {
+  if (tiles.empty()) return {};
+  TilePlace low = tiles.front();
+  TilePlace high = low;
+  for (const TilePlace& place : tiles) {
+    low = {std::min(low.row, place.row), std::min(low.column, place.column)};
+    high = {std::max(high.row, place.row), std::max(high.column, place.column)};
+  }
+  CellRect rect{low.column * tile::side, low.row * tile::side, 0, 0};
+  rect.columns = std::min((high.column + 1) * tile::side, columns) - rect.left;
+  rect.rows = std::min((high.row + 1) * tile::side, rows) - rect.bottom;
+  return rect;
+}
+
 void read_tile(const AwakeTile& t, int parity, float per_area, InkRegion& region) {
   const Cut c = cut(t.place, region.rect);
   for (int y = c.bottom; y < c.top; ++y)

@@ -27,6 +27,9 @@ int cells_across(double mm, double cell_mm);
 // A region of dry white paper: the rectangle, cut to a sheet of columns × rows cells.
 InkRegion blank_region(const CellRect& wanted, int columns, int rows);
 
+// The smallest rectangle around tiles, cut to the sheet; no columns where there are none.
+CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows);
+
 // Adds what one tile holds of the rectangle to a region; `per_area` turns masses into µl/mm².
 void read_tile(const AwakeTile& tile, int parity, float per_area, InkRegion& region);
 void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_area, InkRegion& region);
