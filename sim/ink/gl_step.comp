@@ -20,6 +20,7 @@ const int paper_count = 3;  // blocking, grain, toe
 int cell_x;
 int cell_y;
 int tile_begin;
+Site own_site;
 
 struct Spot {
   int slot;
@@ -37,32 +38,47 @@ Spot beside(int dx, int dy) {
 Site site_beside(int dx, int dy) {
   Spot spot = beside(dx, dy);
   int mass = address(spot.slot, mass_planes, 0, spot.cell);
+  int paper = address(spot.slot, paper_count, 0, spot.cell);
   return site_of(numbers, total(population_at(spot.slot, spot.cell)),
                  vec4(masses_now[mass], masses_now[mass + CELLS], masses_now[mass + 2 * CELLS],
                       masses_now[mass + 3 * CELLS]),
-                 masses_now[mass + 4 * CELLS], paper_planes[address(spot.slot, paper_count, 0, spot.cell)]);
+                 masses_now[mass + 4 * CELLS], paper_planes[paper], paper_planes[paper + CELLS],
+                 paper_planes[paper + 2 * CELLS]);
 }
 
-Relief relief_beside(int dx, int dy) {
-  Spot spot = beside(dx, dy);
-  int at = address(spot.slot, paper_count, 1, spot.cell);
-  return Relief(paper_planes[at], paper_planes[at + CELLS]);
-}
-
-float arriving(int plane, int dx, int dy) {
+float population_beside(int plane, int dx, int dy) {
   Spot spot = beside(dx, dy);
   return populations_now[address(spot.slot, population_planes, plane, spot.cell)];
 }
 
-struct PlaneOf {
-  int rest, e, n, w, s, ne, nw, sw, se;
+const int plane_e = 1, plane_n = 2, plane_w = 3, plane_s = 4, plane_ne = 5, plane_nw = 6, plane_sw = 7, plane_se = 8;
+
+struct SideOf {
+  int e, n, ne, nw;
 };
-const PlaneOf plane_of = PlaneOf(0, 1, 2, 3, 4, 5, 6, 7, 8);
+const SideOf side_of = SideOf(0, 1, 2, 3);
+
+// The link from the cell at (dx, dy) on one of its sides; one end of it is this cell.
+Crossing link(int side, int dx, int dy) {
+  bool from_here = dx == 0 && dy == 0;
+  int x = dx + (side == side_of.n ? 0 : side == side_of.nw ? -1 : 1);
+  int y = dy + (side == side_of.e ? 0 : 1);
+  int out_plane = side == side_of.e ? plane_e : side == side_of.n ? plane_n : side == side_of.ne ? plane_ne : plane_nw;
+  int back_plane = side == side_of.e ? plane_w : side == side_of.n ? plane_s : side == side_of.ne ? plane_sw : plane_se;
+  bool straight = side == side_of.e || side == side_of.n;
+  Site near = own_site;
+  Site far = own_site;
+  if (from_here)
+    far = site_beside(x, y);
+  else
+    near = site_beside(dx, dy);
+  return crossing(numbers, near, far, straight ? near.head : near.diagonal_head,
+                  straight ? far.head : far.diagonal_head, straight ? numbers.pace_straight : numbers.pace_diagonal,
+                  population_beside(out_plane, dx, dy), population_beside(back_plane, x, y));
+}
 
 #define CELL_PARAMETERS
-#define SITE(dx, dy) site_beside(dx, dy)
-#define RELIEF(dx, dy) relief_beside(dx, dy)
-#define ARRIVING(member, dx, dy) arriving(plane_of.member, dx, dy)
+#define CROSSING(side, dx, dy) link(side_of.side, dx, dy)
 #include "step.k"
 
 void main() {
@@ -83,7 +99,8 @@ void main() {
   Population after;
   float water;
   float evaporated;
-  step_cell(numbers, before, mass, surface, surface_mass, fixed_mass, after, water, evaporated);
+  own_site = site_beside(0, 0);
+  step_cell(numbers, numbers.relaxation > 1.0, own_site, before, mass, surface, surface_mass, fixed_mass, after, water, evaporated);
 
   int to = address(slot, population_planes, 0, cell);
   populations_next[to] = after.rest;
