@@ -46,12 +46,12 @@ TEST(Balance, HoldsFromTheFirstDropUntilThePaperIsDry) {
 }
 
 TEST(Balance, HoldsWithoutEvaporationOverThousandsOfSteps) {
-  const auto ink = sheet(20, [](InkSetup& setup) {
+  const auto ink = sheet(10, [](InkSetup& setup) {
     setup.paper.evaporation = 0;
     setup.paper.edge_evaporation = 0;
     setup.paper.fix_base = 0;
   });
-  ink->apply(pour_disc({.strength = {1, 0.5F, 0, 0.1F}}, 10, 10, 4));
+  ink->apply(pour_disc({.strength = {1, 0.5F, 0, 0.1F}}, 5, 5, 2));
   step(*ink, 5000);
   const InkTotals t = ink->totals();
   expect_balance(t, 1e-5);
