@@ -31,6 +31,46 @@ void exchange_between(LoadedPatch& a, LoadedPatch& b, double share) {
   }
 }
 
+// Hands `flow` µl and the pigment in it from one patch to the next; a patch may owe water, never pigment.
+void hand_on(LoadedPatch& from, LoadedPatch& to, double flow) {
+  const double part = from.water_ul > flow ? flow / from.water_ul : 1;
+  from.water_ul -= flow;
+  to.water_ul += flow;
+  for (std::size_t c = 0; c < concentrations_per_group; ++c) {
+    const double carried = part * std::max(0.0, from.pigment_ul[c]);
+    from.pigment_ul[c] -= carried;
+    to.pigment_ul[c] += carried;
+  }
+}
+
+// Along the hair ink wicks as fast as the fullest part can feed it, however little the tip holds. One
+// implicit step of C dp/dt = G p'' for the fill p (Thomas' algorithm), so that it is stable at any G;
+// `conductance` is G times the step, µl per unit of fill.
+void wick(Loading& loading, int around, double conductance) {
+  std::array<double, patches_along> fill{};
+  std::array<double, patches_along> ahead{};
+  const auto at = [&](int i) -> LoadedPatch& { return loading.patches[patch_index(i, around)]; };
+  for (int i = 0; i < patches_along; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double before = i > 0 ? conductance : 0;
+    const double after = i + 1 < patches_along ? conductance : 0;
+    const double pivot = at(i).capacity_ul + before + after - (i > 0 ? before * ahead[k - 1] : 0);
+    ahead[k] = after / pivot;
+    fill[k] = (at(i).water_ul + (i > 0 ? before * fill[k - 1] : 0)) / pivot;
+  }
+  for (std::size_t k = patches_along - 1; k-- > 0;) fill[k] += ahead[k] * fill[k + 1];
+
+  // Down the tuft first and then up it, so that each patch receives before it gives.
+  const auto flow = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    return conductance * (fill[k] - fill[k + 1]);
+  };
+  for (int i = 0; i + 1 < patches_along; ++i)
+    if (flow(i) > 0) hand_on(at(i), at(i + 1), flow(i));
+  for (int i = patches_along - 2; i >= 0; --i)
+    if (flow(i) < 0) hand_on(at(i + 1), at(i), -flow(i));
+}
+
 }  // namespace
 
 int patch_at(double along, double around) {
@@ -100,15 +140,15 @@ void book(Loading& loading, const Exchange& exchange) {
 }
 
 void even_out(Loading& loading, double rate_per_s, double step_s) {
-  // Four links a patch: a quarter of the difference at most, or neighbours would swap.
+  // Around, from neighbour to neighbour: a quarter of the difference at most, or they would swap.
   const double share = 0.25 * (1 - elementary::exponential(-4 * rate_per_s * step_s));
   for (int i = 0; i < patches_along; ++i)
     for (int j = 0; j < patches_around; ++j)
       exchange_between(loading.patches[patch_index(i, j)],
                        loading.patches[patch_index(i, (j + 1) % patches_around)], share);
-  for (int i = 0; i + 1 < patches_along; ++i)
-    for (int j = 0; j < patches_around; ++j)
-      exchange_between(loading.patches[patch_index(i, j)], loading.patches[patch_index(i + 1, j)], share);
+  double capacity = 0;
+  for (const LoadedPatch& patch : loading.patches) capacity += patch.capacity_ul;
+  for (int j = 0; j < patches_around; ++j) wick(loading, j, step_s * rate_per_s * capacity / patches_around);
 }
 
 }  // namespace fude
