@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace fude {
 namespace {
@@ -116,6 +117,11 @@ void Brush::set_endless(bool endless) { state_.loading.endless = endless; }
 void Brush::reshape() {
   state_.tuft = rest_state(tuft_);
   state_.footprint = {};
+}
+
+void Brush::restore(const BrushState& state) {
+  if (state.tuft.x.size() != state_.tuft.x.size()) throw std::invalid_argument("the state of another tuft");
+  state_ = state;
 }
 
 TuftShape Brush::shape() const {

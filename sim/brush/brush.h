@@ -83,7 +83,8 @@ class Brush {
   void reshape();
 
   const BrushState& state() const { return state_; }
-  void restore(const BrushState& state) { state_ = state; }
+  // A state of a tuft with other segments is an error of the caller (std::invalid_argument).
+  void restore(const BrushState& state);
   TuftShape shape() const;
 
  private:

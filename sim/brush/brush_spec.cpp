@@ -66,6 +66,18 @@ std::string take_entry(BrushSpec& spec, std::string_view key, const toml::node& 
 std::span<const BrushParameter> brush_parameters() { return parameters; }
 std::span<const BrushSwitch> brush_switches() { return switches; }
 
+std::vector<std::string> brush_manual_rows() {
+  std::vector<std::string> rows;
+  for (const BrushParameter& row : parameters)
+    rows.push_back("| `" + std::string(row.id) + "` | " + std::string(row.unit) + " | " + plain(row.minimum) +
+                   " to " + plain(row.maximum) + " | " + plain(row.standard) + " | " +
+                   std::string(row.meaning) + " |");
+  for (const BrushSwitch& row : switches)
+    rows.push_back("| `" + std::string(row.id) + "` | | true, false | " + (row.standard ? "true" : "false") +
+                   " | " + std::string(row.meaning) + " |");
+  return rows;
+}
+
 Result<BrushSpec> parse_brush_spec(std::string_view toml, const std::string& source) {
   toml::table table;
   try {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "signal/result.h"
 
@@ -39,6 +40,9 @@ struct BrushSwitch {
   bool BrushSpec::*member;
 };
 std::span<const BrushSwitch> brush_switches();
+
+// The rows of the table in docs/brush.md, one a parameter or switch.
+std::vector<std::string> brush_manual_rows();
 
 // Reads `name`, any parameter and any switch; what is absent keeps its standard value. Fails
 // (malformed) on bad TOML, an unknown key, a wrong type, or a value out of its range; the message

@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "sim/brush/scanline.h"
 
 namespace fude {
-namespace {
-
-// The first sample whose centre is not left of x, held to [0, limit]; std::ceil is a call without SSE4.
-int first_sample(double x, int limit) {
-  const double shifted = std::clamp(x - 0.5, 0.0, static_cast<double>(limit));
-  const int below = static_cast<int>(shifted);
-  return below < shifted ? below + 1 : below;
-}
-
-}  // namespace
 
 using Eigen::Vector2d;
 
@@ -40,8 +31,8 @@ void Coverage::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
 // Samples whose centres lie in [from, to), in samples from the frame's left edge.
 void Coverage::add_span(int sample_row, double from, double to) {
   const int width = frame_.words * 64;
-  const int first = first_sample(from, width);
-  const int last = first_sample(to, width) - 1;
+  const int first = first_centre(from, width);
+  const int last = first_centre(to, width) - 1;
   if (first > last) return;
   std::uint64_t* words = line(sample_row);
   const int a = first >> 6;
@@ -60,25 +51,9 @@ void Coverage::add_span(int sample_row, double from, double to) {
 void Coverage::add_triangle(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   const double scale = samples_per_side / frame_.cell_mm;
   const Vector2d origin(frame_.left_mm(), frame_.bottom_mm());
-  Vector2d p = (a - origin) * scale;
-  Vector2d q = (b - origin) * scale;
-  Vector2d r = (c - origin) * scale;
-  if (p.y() > q.y()) std::swap(p, q);
-  if (q.y() > r.y()) std::swap(q, r);
-  if (p.y() > q.y()) std::swap(p, q);
-  const int height = frame_.rows * samples_per_side;
-  const int first = first_sample(p.y(), height);
-  const int last = first_sample(r.y(), height) - 1;
-  if (first > last) return;
-  const double long_slope = (r.x() - p.x()) / (r.y() - p.y());
-  const double lower_slope = q.y() > p.y() ? (q.x() - p.x()) / (q.y() - p.y()) : 0;
-  const double upper_slope = r.y() > q.y() ? (r.x() - q.x()) / (r.y() - q.y()) : 0;
-  for (int row = first; row <= last; ++row) {
-    const double y = row + 0.5;
-    const double on_long = p.x() + (y - p.y()) * long_slope;
-    const double on_short = y < q.y() ? p.x() + (y - p.y()) * lower_slope : q.x() + (y - q.y()) * upper_slope;
-    add_span(row, std::min(on_long, on_short), std::max(on_long, on_short));
-  }
+  scan_triangle((a - origin) * scale, (b - origin) * scale, (c - origin) * scale,
+                frame_.rows * samples_per_side,
+                [this](int row, double from, double to) { add_span(row, from, to); });
 }
 
 void Coverage::add(const Coverage& other) {

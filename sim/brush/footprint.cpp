@@ -6,6 +6,7 @@
 
 #include "sim/brush/coverage.h"
 #include "sim/brush/loading.h"
+#include "sim/brush/scanline.h"
 
 namespace fude {
 namespace {
@@ -108,118 +109,87 @@ class Stamp {
       : frame_(frame), texture_(texture), loads_(loads) {
     const auto cells = static_cast<std::size_t>(frame.columns()) * static_cast<std::size_t>(frame.rows);
     patch_.assign(cells, none);
-    inked_.assign(cells, 1);
     for (const InkLoad& load : loads)
       streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
+    if (streaky_) inked_.assign(cells, 1);
   }
 
   // Fills cells that no later instant has filled.
   void add(const Contact& contact) {
     for (const auto& run : contact.runs)
       for (std::size_t i = 1; i < run.size(); ++i)
-        for (std::size_t j = 1; j < ring_points; ++j) add_cell_quad(run[i - 1], run[i], j);
+        for (std::size_t j = 1; j < ring_points; ++j) {
+          const Corner a = corner(run[i - 1], j - 1);
+          const Corner c = corner(run[i], j);
+          add_triangle(a, corner(run[i - 1], j), c);
+          add_triangle(a, c, corner(run[i], j - 1));
+        }
   }
 
-  // Cells that hold a sample but no centre take after a neighbour that has one.
-  std::uint16_t patch(int row, int column) const { return patch_[nearest(row, column)]; }
-  float inked(int row, int column) const { return inked_[nearest(row, column)]; }
-
-  static constexpr std::uint16_t none = 0xffff;
+  // Patch and inked share of a cell; one that holds a sample but no centre takes after a neighbour.
+  std::uint16_t patch(std::size_t cell) const {
+    return patch_[cell] == none ? std::uint16_t{0} : patch_[cell];
+  }
+  float inked(std::size_t cell) const { return streaky_ ? inked_[cell] : 1; }
+  std::size_t nearest(int row, int column) const;
 
  private:
+  static constexpr std::uint16_t none = 0xffff;
+
+  struct Corner {
+    Vector2d cell;
+    Vector2d on_tuft;  // along, around
+  };
+  Corner corner(const ContactRing& ring, std::size_t j) const {
+    return {(ring.point[j] - Vector2d(frame_.left_mm(), frame_.bottom_mm())) / frame_.cell_mm,
+            {ring.along, ring.around[j]}};
+  }
+  void add_triangle(const Corner& a, const Corner& b, const Corner& c);
   std::size_t at(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(frame_.columns()) +
            static_cast<std::size_t>(column);
   }
-  std::size_t nearest(int row, int column) const {
-    for (int ring = 0; ring < 4; ++ring)
-      for (int dy = -ring; dy <= ring; ++dy)
-        for (int dx = -ring; dx <= ring; ++dx) {
-          const int y = row + dy;
-          const int x = column + dx;
-          if (y < 0 || x < 0 || y >= frame_.rows || x >= frame_.columns()) continue;
-          if (patch_[at(y, x)] != none) return at(y, x);
-        }
-    return at(row, column);
-  }
-  void add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_t j);
 
   const CoverageFrame& frame_;
   const HairTexture& texture_;
   const std::vector<InkLoad>& loads_;
   std::vector<std::uint16_t> patch_;
-  std::vector<float> inked_;
+  std::vector<float> inked_;  // where streaky
   bool streaky_ = false;
 };
 
-// Narrows [from, to] to where value + slope x ≥ 0.
-void clip(double value, double slope, double& from, double& to) {
-  if (slope > 0) {
-    from = std::max(from, -value / slope);
-  } else if (slope < 0) {
-    to = std::min(to, -value / slope);
-  } else if (value < 0) {
-    to = from;
-  }
+// The place on the tuft goes over linearly within a triangle.
+void Stamp::add_triangle(const Corner& a, const Corner& b, const Corner& c) {
+  const Vector2d u = b.cell - a.cell;
+  const Vector2d v = c.cell - a.cell;
+  const double area = u.x() * v.y() - u.y() * v.x();
+  if (std::abs(area) < 1e-12) return;
+  const Vector2d by_u = (b.on_tuft - a.on_tuft) / area;
+  const Vector2d by_v = (c.on_tuft - a.on_tuft) / area;
+  const Vector2d by_x = v.y() * by_u - u.y() * by_v;
+  const Vector2d by_y = u.x() * by_v - v.x() * by_u;
+  scan_triangle(a.cell, b.cell, c.cell, frame_.rows, [&](int row, double from, double to) {
+    const Vector2d start = a.on_tuft + (row + 0.5 - a.cell.y()) * by_y - a.cell.x() * by_x;
+    const int end = first_centre(to, frame_.columns());
+    for (int column = first_centre(from, frame_.columns()); column < end; ++column) {
+      const std::size_t cell = at(row, column);
+      if (patch_[cell] != none) continue;
+      const Vector2d place = start + (column + 0.5) * by_x;
+      const int patch = patch_at(place[0], place[1]);
+      patch_[cell] = static_cast<std::uint16_t>(patch);
+      if (!streaky_) continue;
+      const double wetness = static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness);
+      inked_[cell] = static_cast<float>(texture_.inked(place[0], place[1], wetness));
+    }
+  });
 }
 
-// Within a quad the place on the tuft goes over linearly: bilinear inverse by its two triangles.
-void Stamp::add_cell_quad(const ContactRing& a, const ContactRing& b, std::size_t j) {
-  struct Corner {
-    Vector2d p;
-    double along;
-    double around;
-  };
-  const std::array<Corner, 4> corner = {{{a.point[j - 1], a.along, a.around[j - 1]},
-                                         {a.point[j], a.along, a.around[j]},
-                                         {b.point[j], b.along, b.around[j]},
-                                         {b.point[j - 1], b.along, b.around[j - 1]}}};
-  const Vector2d origin(frame_.left_mm(), frame_.bottom_mm());
-  for (const std::array<std::size_t, 3>& t : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}}) {
-    const Vector2d p = (corner[t[0]].p - origin) / frame_.cell_mm;
-    const Vector2d u = (corner[t[1]].p - corner[t[0]].p) / frame_.cell_mm;
-    const Vector2d v = (corner[t[2]].p - corner[t[0]].p) / frame_.cell_mm;
-    const double area = u.x() * v.y() - u.y() * v.x();
-    if (std::abs(area) < 1e-12) continue;
-    const double along_s = corner[t[1]].along - corner[t[0]].along;
-    const double along_r = corner[t[2]].along - corner[t[0]].along;
-    const double around_s = corner[t[1]].around - corner[t[0]].around;
-    const double around_r = corner[t[2]].around - corner[t[0]].around;
-    // Cell centres in a row lie in the triangle where s, r and 1 − s − r are all positive; each is a
-    // straight line along the row.
-    const int row_end =
-        std::min(frame_.rows - 1, static_cast<int>(std::max({p.y(), p.y() + u.y(), p.y() + v.y()})));
-    const double s_by_x = v.y() / area;
-    const double r_by_x = -u.y() / area;
-    for (int row = std::max(0, static_cast<int>(std::min({p.y(), p.y() + u.y(), p.y() + v.y()})));
-         row <= row_end; ++row) {
-      const double dy = row + 0.5 - p.y();
-      const double s0 = (-p.x() * v.y() - dy * v.x()) / area;
-      const double r0 = (dy * u.x() + p.x() * u.y()) / area;
-      double from = 0;
-      double to = frame_.columns();
-      clip(s0, s_by_x, from, to);
-      clip(r0, r_by_x, from, to);
-      clip(1 - s0 - r0, -s_by_x - r_by_x, from, to);
-      if (!(from < to)) continue;
-      const int last = to < 0.5 ? -1 : static_cast<int>(to - 0.5);
-      const double along_by_x = s_by_x * along_s + r_by_x * along_r;
-      const double around_by_x = s_by_x * around_s + r_by_x * around_r;
-      const double along_0 = corner[t[0]].along + s0 * along_s + r0 * along_r;
-      const double around_0 = corner[t[0]].around + s0 * around_s + r0 * around_r;
-      for (int column = static_cast<int>(from + 0.5); column <= last; ++column) {
-        const std::size_t cell = at(row, column);
-        if (patch_[cell] != none) continue;
-        const double along = along_0 + along_by_x * (column + 0.5);
-        const double around = around_0 + around_by_x * (column + 0.5);
-        const int patch = patch_at(along, around);
-        patch_[cell] = static_cast<std::uint16_t>(patch);
-        if (streaky_)
-          inked_[cell] = static_cast<float>(texture_.inked(
-              along, around, static_cast<double>(loads_[static_cast<std::size_t>(patch)].wetness)));
-      }
-    }
-  }
+std::size_t Stamp::nearest(int row, int column) const {
+  for (int ring = 0; ring < 4; ++ring)
+    for (int y = std::max(0, row - ring); y <= std::min(frame_.rows - 1, row + ring); ++y)
+      for (int x = std::max(0, column - ring); x <= std::min(frame_.columns() - 1, column + ring); ++x)
+        if (patch_[at(y, x)] != none) return at(y, x);
+  return at(row, column);
 }
 
 void add_contact_time(const Coverage& cover, double duration_s, std::vector<float>& contact_s) {
@@ -288,9 +258,9 @@ std::optional<FootprintMap> sweep(const TuftSurface& before, std::span<const Tim
         const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(map.columns) +
                           static_cast<std::size_t>(column);
         if (counts[c] == 0 && map.contact_s[cell] == 0) continue;
-        const std::uint16_t patch = stamp.patch(row, column);
-        map.patch[cell] = patch == Stamp::none ? std::uint16_t{0} : patch;
-        const float inked = stamp.inked(row, column);
+        const std::size_t like = stamp.nearest(row, column);
+        map.patch[cell] = stamp.patch(like);
+        const float inked = stamp.inked(like);
         map.fresh[cell] = inked * static_cast<float>(counts[c]) / (samples_per_side * samples_per_side);
         map.contact_s[cell] *= inked;
       }

@@ -73,13 +73,6 @@ void wick(Loading& loading, int around, double conductance) {
 
 }  // namespace
 
-int patch_at(double along, double around) {
-  const int row = std::clamp(static_cast<int>(along * patches_along), 0, patches_along - 1);
-  const double within = around + 1 - static_cast<double>(static_cast<int>(around + 1));
-  const int column = std::clamp(static_cast<int>(within * patches_around), 0, patches_around - 1);
-  return row * patches_around + column;
-}
-
 Loading dry_loading(const Tuft& tuft) {
   Loading loading;
   std::array<double, patches_along> volume{};

@@ -1,6 +1,7 @@
 // The ink a tuft carries: patches over its surface, along × around (Chu 2.6, 2.7). Volumes in µl.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -14,7 +15,11 @@ inline constexpr int patches_around = 8;
 inline constexpr int patch_count = patches_along * patches_around;
 
 // The patch at `along` (0 root to 1 tip) and `around` turns from the lateral line (not below −1).
-int patch_at(double along, double around);
+inline int patch_at(double along, double around) {
+  const int row = std::clamp(static_cast<int>(along * patches_along), 0, patches_along - 1);
+  const int column = static_cast<int>((around + 1) * patches_around) % patches_around;
+  return row * patches_around + column;
+}
 
 struct LoadedPatch {
   double capacity_ul = 0;
