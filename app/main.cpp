@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
   fude::add_import(app, status);
   fude::add_perform(app, status);
   fude::add_info(app, status);
+  fude::add_devices(app, status);
+  fude::add_record(app, status);
   fude::add_bench(app, status);
   try {
     app.parse(argc, argv);

@@ -141,6 +141,7 @@ MockTablet::MockTablet(UMockdevTestbed* testbed, const DeviceDescription& device
   check(umockdev_testbed_load_ioctl(testbed, node_.c_str(), answers.c_str(), &error), error, "load_ioctl");
   std::filesystem::remove(answers);
   port_ = umockdev_testbed_get_dev_fd(testbed, node_.c_str());
+  umockdev_testbed_uevent(testbed, syspath_.c_str(), "add");  // told before, when it could not answer yet
 }
 
 void MockTablet::send(std::span<const EvdevEvent> events) {
@@ -165,13 +166,12 @@ void MockTablet::send_bytes(std::span<const std::byte> bytes) {
   }
 }
 
-void MockTablet::unplug() {
-  // Whoever has the node open sees it hang up: its other end is closed under its number.
+void MockTablet::hang_up() {
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
-  dup2(nothing, port_);
+  dup2(nothing, port_);  // the number is the testbed's to close
   close(nothing);
-  umockdev_testbed_uevent(testbed_, syspath_.c_str(), "remove");
-  umockdev_testbed_remove_device(testbed_, syspath_.c_str());
 }
+
+void MockTablet::announce_removal() { umockdev_testbed_uevent(testbed_, syspath_.c_str(), "remove"); }
 
 }  // namespace fude

@@ -26,7 +26,10 @@ class MockTablet {
   const std::string& syspath() const { return syspath_; }
   void send(std::span<const EvdevEvent> events);
   void send_bytes(std::span<const std::byte> bytes);
-  void unplug();
+  // The two halves of unplugging, which may come in either order. After hanging up, umockdev cannot add
+  // another device.
+  void hang_up();
+  void announce_removal();
 
  private:
   UMockdevTestbed* testbed_;

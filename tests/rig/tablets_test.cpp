@@ -1,0 +1,154 @@
+// Live tablets and recording, over the tablets that umockdev pretends.
+#include "rig/tablets.h"
+
+#include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+#include <umockdev.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "capture/session.h"
+#include "rig/record_session.h"
+#include "tests/fakes/mock_tablet.h"
+
+namespace fude {
+namespace {
+
+DeviceDescription pen(const std::string& serial) {
+  DeviceDescription device;
+  device.name = "Mock Pen " + serial;
+  device.bus = 3;
+  device.vendor = 0x056a;
+  device.product = 0x0304;
+  device.serial = serial;
+  device.keys = {BTN_TOOL_PEN, BTN_TOUCH};
+  device.axes = {
+      {ABS_X, 0, 59552, 4, 0, 200, 0}, {ABS_Y, 0, 33848, 4, 0, 200, 0}, {ABS_PRESSURE, 0, 1023, 0, 0, 0, 0}};
+  return device;
+}
+
+void draw(MockTablet& tablet, int x) {
+  const EvdevEvent events[] = {{EV_KEY, BTN_TOOL_PEN, 1},
+                               {EV_KEY, BTN_TOUCH, 1},
+                               {EV_ABS, ABS_PRESSURE, 300},
+                               {EV_ABS, ABS_X, x},
+                               {EV_SYN, SYN_REPORT, 0}};
+  tablet.send(events);
+}
+
+struct Heard {
+  std::mutex mutex;
+  std::vector<std::string> appeared;
+  std::vector<std::pair<std::size_t, PenSample>> samples;
+  std::vector<TransferKind> plugs;
+
+  TabletListener listener() {
+    return {[this](std::size_t, const DeviceDescription& device) {
+              const std::lock_guard lock(mutex);
+              appeared.push_back(device.id);
+            },
+            [this](std::size_t tablet, const Transfer& transfer, const std::optional<PenSample>& sample) {
+              const std::lock_guard lock(mutex);
+              if (transfer.kind != TransferKind::evdev_frame) plugs.push_back(transfer.kind);
+              if (sample) samples.emplace_back(tablet, *sample);
+            },
+            [](const Error&) {}};
+  }
+  // Waits for another thread; the limit only ends a test that has failed.
+  bool until(const std::function<bool()>& come) {
+    for (int i = 0; i < 10000; ++i) {
+      {
+        const std::lock_guard lock(mutex);
+        if (come()) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+};
+
+class LiveTablets : public testing::Test {
+ protected:
+  LiveTablets() : testbed_(umockdev_testbed_new(), g_object_unref) {}
+  std::unique_ptr<UMockdevTestbed, decltype(&g_object_unref)> testbed_;
+  Heard heard_;
+};
+
+TEST_F(LiveTablets, TwoTabletsAreReadAtOnce) {
+  MockTablet one(testbed_.get(), pen("1"), 5);
+  MockTablet two(testbed_.get(), pen("2"), 6);
+  const auto tablets = Tablets::open(heard_.listener());
+  ASSERT_TRUE(tablets) << tablets.error().message;
+  EXPECT_EQ(heard_.appeared, (std::vector<std::string>{"056a:0304:1", "056a:0304:2"}));
+  draw(one, 100);
+  draw(two, 200);
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 2; }));
+  for (const auto& [tablet, sample] : heard_.samples) EXPECT_EQ(sample.x_counts, tablet == 0 ? 100 : 200);
+}
+
+TEST_F(LiveTablets, UnpluggedInMidStrokeAndBackUnderAnotherNodeItIsTheSame) {
+  MockTablet tablet(testbed_.get(), pen("1"), 5);
+  const auto tablets = Tablets::open(heard_.listener());
+  ASSERT_TRUE(tablets);
+  draw(tablet, 100);
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 1; }));
+  tablet.announce_removal();
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 2; }));
+  EXPECT_EQ(heard_.samples[1].second.tool, PenTool::none);
+
+  MockTablet back(testbed_.get(), pen("1"), 9);
+  ASSERT_TRUE(heard_.until([&] { return heard_.plugs.size() == 2; }));
+  EXPECT_EQ(heard_.plugs, (std::vector{TransferKind::unplugged, TransferKind::plugged}));
+  draw(back, 700);
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 3; }));
+  EXPECT_EQ(heard_.samples[2].first, 0u);
+  EXPECT_TRUE(heard_.samples[2].second.after_gap);
+  EXPECT_EQ(heard_.samples[2].second.x_counts, 700);
+  EXPECT_EQ(heard_.appeared.size(), 1u);
+}
+
+TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "recorded.fude";
+  std::filesystem::remove(file);
+  MockTablet tablet(testbed_.get(), pen("1"), 5);
+  auto recording = RecordingSession::start(file, [](const std::string&) {});
+  ASSERT_TRUE(recording) << recording.error().message;
+  for (int i = 1; i <= 50; ++i) {
+    draw(tablet, i);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));  // umockdev's pipe holds 4 kB
+  }
+  const EvdevEvent drop[] = {{EV_ABS, ABS_X, 51}, {EV_SYN, SYN_DROPPED, 0}, {EV_SYN, SYN_REPORT, 0}};
+  tablet.send(drop);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto streams = (*recording)->finish();
+  ASSERT_TRUE(streams) << streams.error().message;
+  ASSERT_EQ(streams->size(), 1u);
+  EXPECT_EQ(streams->at(0).expected, streams->at(0).received + streams->at(0).dropped);
+  EXPECT_EQ(streams->at(0).dropped, 1);
+  EXPECT_EQ(streams->at(0).received, 51);  // fifty drawn and what the kernel was asked after the drop
+
+  const auto session = read_session(file);
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_TRUE(session->complete);
+  EXPECT_EQ(session->devices.at(0).description.id, "056a:0304:1");
+  ASSERT_GE(session->pens.size(), 50u);
+  EXPECT_EQ(session->pens[49].sample.x_counts, 50);
+  EXPECT_EQ(session->receipts.at(0).dropped, 1);
+  std::filesystem::remove(file);
+}
+
+TEST_F(LiveTablets, WithoutATabletNoSessionIsMade) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "none.fude";
+  const auto recording = RecordingSession::start(file, [](const std::string&) {});
+  ASSERT_FALSE(recording);
+  EXPECT_EQ(recording.error().fault, Fault::not_found);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+}  // namespace
+}  // namespace fude
