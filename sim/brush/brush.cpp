@@ -29,6 +29,13 @@ Pose<Paper, Handle> between(const Pose<Paper, Handle>& a, const Pose<Paper, Hand
   return pose;
 }
 
+// 0 where time stands still or runs backwards; any two stamps have a difference.
+double seconds_since(Timestamp last, Timestamp now) {
+  if (now <= last) return 0;
+  const auto ticks = [](Timestamp t) { return static_cast<std::uint64_t>(t.time_since_epoch().count()); };
+  return static_cast<double>(ticks(now) - ticks(last)) * 1e-9;
+}
+
 void take_worse(SolveReport& sum, const SolveReport& step) {
   sum.iterations = std::max(sum.iterations, step.iterations);
   sum.converged = sum.converged && step.converged;
@@ -66,7 +73,7 @@ void Brush::take_footprint() {
 BrushFrame Brush::move(const BrushInput& input) {
   BrushFrame frame;
   const bool first = !state_.timed;
-  const double elapsed_s = first ? 0 : std::max(0.0, seconds(input.time.host - state_.last));
+  const double elapsed_s = first ? 0 : seconds_since(state_.last, input.time.host);
   state_.last = first ? input.time.host : std::max(state_.last, input.time.host);
   state_.timed = true;
   even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, 10.0));
