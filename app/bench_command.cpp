@@ -1,13 +1,16 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "app/commands.h"
 #include "app/painting_options.h"
 #include "rig/bench_pipeline.h"
 #include "sim/brush/bench_brush.h"
+#include "sim/ink/bench_ink.h"
 
 namespace fude {
 namespace {
@@ -21,6 +24,52 @@ void print(const Json& figures, bool json) {
   }
   for (const auto& [name, value] : figures.items())
     std::printf("%-20s %s\n", name.c_str(), value.dump().c_str());
+}
+
+void add_ink(CLI::App& bench, int& status) {
+  struct Options {
+    InkBenchSetup setup;
+    std::string stage = "full", backend = "cpu", isa = "auto";
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  options->setup.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command = bench.add_subcommand("ink", "steps of the ink, against copying memory");
+  InkBenchSetup& setup = options->setup;
+  command->add_option("--size", setup.side_cells, "cells a side");
+  command->add_option("--wet", setup.wet, "share of the sheet that is wet");
+  command->add_option("--steps", setup.steps, "how many");
+  command->add_option("--stage", options->stage, "lattice: water alone")
+      ->check(CLI::IsMember({"lattice", "full"}));
+  command->add_option("--threads", setup.threads, "of the CPU back-end");
+  command->add_option("--backend", options->backend, "what runs the ink")
+      ->check(CLI::IsMember({"cpu", "gl", "auto"}));
+  command->add_option("--isa", options->isa, "instructions of the CPU back-end")
+      ->check(CLI::IsMember({"sse2", "avx2", "avx512", "auto"}));
+  command->add_flag("--dense", setup.dense, "every cell is stepped, wet or not");
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options, &status] {
+    InkBenchSetup& s = options->setup;
+    s.stage = options->stage == "lattice" ? Stage::water : Stage::full;
+    s.instruction_set = instruction_set_named(options->isa);
+    const auto b = bench_ink(s);
+    if (!b) {
+      status = report(b.error());
+      return;
+    }
+    print(Json{{"backend", options->backend},
+               {"isa", name_of(b->instruction_set)},
+               {"threads", b->threads},
+               {"cells", b->cells},
+               {"wet_cells", b->wet_cells},
+               {"active_cells", b->active_cells},
+               {"stage", options->stage},
+               {"ms_per_step", {{"median", b->median_ms}, {"p99", b->p99_ms}}},
+               {"mlups", b->mlups},
+               {"copy_gb_s", b->copy_gb_s},
+               {"bandwidth_fraction", b->bandwidth_fraction}},
+          options->json);
+  });
 }
 
 void add_brush(CLI::App& bench, int& status) {
@@ -86,6 +135,7 @@ void add_pipeline(CLI::App& bench, int& status) {
 void add_bench(CLI::App& app, int& status) {
   CLI::App* bench = app.add_subcommand("bench", "measures this machine");
   bench->require_subcommand(1);
+  add_ink(*bench, status);
   add_brush(*bench, status);
   add_pipeline(*bench, status);
 }

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "fude 0.1.0");
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
+  fude::add_demo(app, status);
   fude::add_replay(app, status);
   fude::add_import(app, status);
   fude::add_perform(app, status);
