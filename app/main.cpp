@@ -27,6 +27,9 @@ int main(int argc, char** argv) {
   fude::add_devices(app, status);
   fude::add_record(app, status);
   fude::add_bench(app, status);
+#ifdef FUDE_WINDOW
+  fude::add_paint(app, status);
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {

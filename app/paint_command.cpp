@@ -1,0 +1,67 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "app/commands.h"
+#include "app/painting_options.h"
+#include "app/studio/studio.h"
+
+namespace fude {
+namespace {
+
+struct Options {
+  PaintingOptions painting;
+  std::string session, script, out, picture;
+  bool force = false;
+};
+
+Result<std::vector<ScriptedEvent>> load_script(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) return failure(Fault::not_found, "cannot open the script " + file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return read_script(text.str(), file);
+}
+
+Result<void> run(const Options& options) {
+  StudioSetup setup;
+  auto settings = options.painting.settings();
+  if (!settings) return tl::unexpected(settings.error());
+  setup.settings = std::move(*settings);
+  if (!options.session.empty()) {
+    auto session = read_session(options.session);
+    if (!session) return tl::unexpected(session.error());
+    setup.played = std::move(*session);
+  }
+  if (!options.script.empty()) {
+    auto script = load_script(options.script);
+    if (!script) return tl::unexpected(script.error());
+    setup.script = std::move(*script);
+  }
+  setup.out = options.out;
+  setup.picture = options.picture;
+  setup.overwrite = options.force;
+  return run_studio(setup);
+}
+
+}  // namespace
+
+void add_paint(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  options->painting.backend = "auto";
+  CLI::App* command =
+      app.add_subcommand("paint", "the studio: a window to paint in, or to watch a session in");
+  command->add_option("SESSION", options->session, "a .fude session to play");
+  command->add_option("--script", options->script, "events to inject, as app/studio/script.h tells");
+  command->add_option("--out", options->out, "record the painting as a session (.fude)");
+  command->add_option("--picture", options->picture, "the sheet when the window closes (.png)");
+  command->add_flag("--force", options->force, "replace existing pictures");
+  options->painting.add_to(*command);
+  command->callback([options, &status] {
+    if (const auto done = run(*options); !done) status = report(done.error());
+  });
+}
+
+}  // namespace fude

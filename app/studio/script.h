@@ -1,0 +1,48 @@
+// A window driven by a script: events of the mouse and the keyboard at stated times, as a hand would give
+// them. Text, one event a line; `#` begins a comment. Places are millimetres on the paper.
+//
+//   SECONDS move X Y        SECONDS key NAME       (undo redo load reshape dry fit)
+//   SECONDS press           SECONDS zoom FACTOR    (about the middle of the window)
+//   SECONDS release         SECONDS save FILE      (the sheet as it stands, a PNG)
+//   SECONDS pressure P      SECONDS quit
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "signal/result.h"
+
+namespace fude {
+
+enum class StudioKey { undo, redo, load, reshape, dry, fit };
+
+struct MoveTo {
+  double x_mm;
+  double y_mm;
+};
+struct Button {
+  bool pressed;
+};
+struct Press {
+  double pressure;
+};
+struct Zoom {
+  double factor;
+};
+struct SaveAs {
+  std::string file;
+};
+struct Quit {};
+
+using StudioEvent = std::variant<MoveTo, Button, Press, Zoom, StudioKey, SaveAs, Quit>;
+
+struct ScriptedEvent {
+  double at_s;
+  StudioEvent what;
+};
+
+// In order of time. Errors: malformed, naming the line.
+Result<std::vector<ScriptedEvent>> read_script(const std::string& text, const std::string& source);
+
+}  // namespace fude

@@ -1,0 +1,265 @@
+#include "app/studio/studio.h"
+
+#include <imgui.h>
+
+#include <chrono>
+#include <utility>
+
+#include "app/studio/mouse_pen.h"
+#include "app/studio/panel.h"
+#include "app/studio/sheet_image.h"
+#include "app/studio/tuft_drawing.h"
+#include "app/studio/view.h"
+#include "app/studio/window.h"
+#include "rig/live_painting.h"
+#include "rig/session_summary.h"
+#include "sim/optics/png_file.h"
+
+namespace fude {
+namespace {
+
+using StudioClock = std::chrono::steady_clock;  // CLOCK_MONOTONIC, as the rig's
+
+Timestamp now() {
+  return Timestamp(std::chrono::duration_cast<Duration>(StudioClock::now().time_since_epoch()));
+}
+
+// Saved pictures get the first free name.
+std::string free_picture_name() {
+  for (int i = 1;; ++i) {
+    const std::string name = "fude-" + std::to_string(i) + ".png";
+    if (!std::filesystem::exists(name)) return name;
+  }
+}
+
+class Studio {
+ public:
+  Studio(const StudioSetup& setup, const SheetPlan& plan, Painting painting, Recorder* recorder)
+      : setup_(setup),
+        plan_(plan),
+        sheet_mm_(plan.sheet.width.value, plan.sheet.height.value),
+        columns_(painting.ink().columns()),
+        rows_(painting.ink().rows()),
+        step_ms_(painting.step_s() * 1e3),
+        mouse_{.sheet = plan.sheet},
+        live_(std::move(painting), setup.settings.reach, recorder) {
+    if (setup.played)
+      for (const RecordedDevice& device : setup.played->devices) {
+        numbers_[device.number] = ++devices_;
+        if (recorder) recorder->add(device.description);
+      }
+    const DeviceDescription mouse = mouse_description(plan.sheet);
+    mouse_device_ = ++devices_;
+    if (recorder) recorder->add(mouse);
+    mouse_mapping_ = *mapping_for(mouse, plan.sheet);
+  }
+
+  Result<void> run() {
+    auto window = Window::open("fude", events());
+    if (!window) return tl::unexpected(window.error());
+    window_ = std::move(*window);
+    image_.emplace(columns_, rows_, setup_.settings.palette);
+    view_.window = window_->size();
+    view_.fit(sheet_mm_);
+    start_ = now();
+    while (!quitting_ && window_->begin_frame()) {
+      view_.window = window_->size();
+      inject();
+      play();
+      if (const auto changes = live_.take_changes()) image_->show(*changes);
+      draw();
+      window_->end_frame();
+      if (failed_) break;
+    }
+    image_.reset();
+    window_.reset();
+    if (failed_) return tl::unexpected(*failed_);
+    return {};
+  }
+
+  // The brush leaves the paper, and the sheet is what a replay of the session makes of it.
+  Picture finish() {
+    mouse_.over_paper = mouse_.pressed = false;
+    send_mouse();
+    History& history = live_.stop();
+    history.advance_to(history.step() + 1);
+    return picture_of(history.painting().ink(), setup_.settings.palette);
+  }
+
+ private:
+  WindowEvents events() {
+    return {.moved = [this](const Eigen::Vector2d& at) { move_to(view_.to_paper(at)); },
+            .button = [this](bool pressed) { handle(Button{pressed}); },
+            .dragged = [this](const Eigen::Vector2d& by) { view_.pan(by); },
+            .scrolled = [this](double notches,
+                               const Eigen::Vector2d& at) { view_.zoom(notches > 0 ? 1.15 : 1 / 1.15, at); },
+            .key = [this](const std::string& key) { press_key(key); }};
+  }
+
+  void press_key(const std::string& key) {
+    if (key == "Ctrl+Z") handle(StudioKey::undo);
+    if (key == "Shift+Ctrl+Z" || key == "Ctrl+Y") handle(StudioKey::redo);
+    if (key == "L") handle(StudioKey::load);
+    if (key == "R") handle(StudioKey::reshape);
+    if (key == "D") handle(StudioKey::dry);
+    if (key == "F") handle(StudioKey::fit);
+    if (key == "S" || key == "Ctrl+S") handle(SaveAs{free_picture_name()});
+  }
+
+  void handle(const StudioEvent& event) {
+    std::visit([this](const auto& what) { on(what); }, event);
+  }
+  void on(const MoveTo& to) { move_to({to.x_mm, to.y_mm}); }
+  void on(const Button& button) {
+    mouse_.pressed = button.pressed;
+    send_mouse();
+  }
+  void on(const Press& press) {
+    mouse_.pressure = press.pressure;
+    send_mouse();
+  }
+  void on(const Zoom& zoom) { view_.zoom(zoom.factor, 0.5 * view_.window); }
+  void on(const SaveAs& save) {
+    const auto done = write_png(save.file, image_->picture(), {.overwrite = setup_.overwrite});
+    if (!done) failed_ = done.error();
+    saved_ = save.file;
+  }
+  void on(const Quit&) { quitting_ = true; }
+  void on(StudioKey key) {
+    switch (key) {
+      case StudioKey::undo:
+        live_.act({now(), Undo{}});
+        break;
+      case StudioKey::redo:
+        live_.act({now(), Redo{}});
+        break;
+      case StudioKey::load:
+        live_.act({now(), setup_.settings.painting.load});
+        break;
+      case StudioKey::reshape:
+        live_.act({now(), ReshapeBrush{}});
+        break;
+      case StudioKey::dry:
+        live_.act({now(), DrySheet{}});
+        break;
+      case StudioKey::fit:
+        view_.fit(sheet_mm_);
+        break;
+    }
+  }
+
+  void move_to(const Eigen::Vector2d& mm) {
+    mouse_.at_mm = mm;
+    mouse_.over_paper = mm.x() >= 0 && mm.y() >= 0 && mm.x() <= sheet_mm_.x() && mm.y() <= sheet_mm_.y();
+    send_mouse();
+  }
+
+  void send_mouse() {
+    live_.pen({mouse_device_, mouse_.sample(now()), mouse_mapping_});
+    mouse_shown_ = true;
+  }
+
+  void inject() {
+    while (next_scripted_ < setup_.script.size() &&
+           seconds(now() - start_) >= setup_.script[next_scripted_].at_s && !quitting_)
+      handle(setup_.script[next_scripted_++].what);
+  }
+
+  // The recorded hand moves here as it moved then.
+  void play() {
+    if (!setup_.played) return;
+    const Session& session = *setup_.played;
+    const Timestamp began = span_of(session).first;
+    const Duration reached = now() - start_;
+    for (; next_pen_ < session.pens.size() && session.pens[next_pen_].sample.time.host - began <= reached;
+         ++next_pen_) {
+      const RecordedPen& pen = session.pens[next_pen_];
+      const auto mapping = plan_.mappings.find(pen.device);
+      if (mapping == plan_.mappings.end()) continue;
+      LivePen live{numbers_[pen.device], pen.sample, mapping->second};
+      live.sample.time.host = start_ + (pen.sample.time.host - began);
+      live_.pen(std::move(live));
+      mouse_shown_ = false;
+    }
+    for (; next_action_ < session.actions.size() &&
+           session.actions[next_action_].action.time - began <= reached;
+         ++next_action_)
+      live_.act(session.actions[next_action_].action);
+  }
+
+  void draw() {
+    const LiveStatus status = live_.status();
+    ImDrawList& canvas = *ImGui::GetBackgroundDrawList();
+    const Eigen::Vector2d top_left = view_.to_window({0, sheet_mm_.y()});
+    const Eigen::Vector2d bottom_right = view_.to_window({sheet_mm_.x(), 0});
+    const auto point = [](const Eigen::Vector2d& p) {
+      return ImVec2(static_cast<float>(p.x()), static_cast<float>(p.y()));
+    };
+    image_->sharpen(view_.pixels_per_mm * sheet_mm_.x() > 2 * columns_);
+    canvas.AddRectFilled(point(top_left + Eigen::Vector2d(4, 5)), point(bottom_right + Eigen::Vector2d(4, 5)),
+                         IM_COL32(0, 0, 0, 70));
+    canvas.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(image_->texture())),
+                    point(top_left), point(bottom_right));
+    if (status.pen.in_proximity) draw_tuft(canvas, view_, status.tuft);
+    const PanelChoice choice = draw_panel(status, mouse_shown_, mouse_, step_ms_);
+    if (choice.key) handle(*choice.key);
+    if (choice.save) handle(SaveAs{free_picture_name()});
+    if (!saved_.empty())
+      canvas.AddText(ImVec2(12, static_cast<float>(view_.window.y()) - 24), IM_COL32(255, 255, 255, 255),
+                     ("saved " + saved_).c_str());
+  }
+
+  const StudioSetup& setup_;
+  const SheetPlan& plan_;
+  Eigen::Vector2d sheet_mm_;
+  int columns_;
+  int rows_;
+  double step_ms_;
+  MousePen mouse_;
+  TabletMapping mouse_mapping_;
+  std::map<DeviceNumber, DeviceNumber> numbers_;  // of the played session's devices, here
+  DeviceNumber devices_ = 0;
+  DeviceNumber mouse_device_ = 0;
+  LivePainting live_;
+  std::unique_ptr<Window> window_;
+  std::optional<SheetImage> image_;
+  View view_;
+  Timestamp start_{};
+  std::size_t next_scripted_ = 0;
+  std::size_t next_pen_ = 0;
+  std::size_t next_action_ = 0;
+  bool mouse_shown_ = true;
+  bool quitting_ = false;
+  std::string saved_;
+  std::optional<Error> failed_;
+};
+
+}  // namespace
+
+Result<void> run_studio(const StudioSetup& setup) {
+  const Session blank;
+  SheetWish wish = setup.settings.wish;
+  if (!setup.played && !wish.sheet) wish.sheet = Extent{Millimetres(210), Millimetres(148)};
+  const auto plan = plan_sheet(setup.played ? *setup.played : blank, wish);
+  if (!plan) return tl::unexpected(plan.error());
+  PaintingSetup painting_setup = setup.settings.painting;
+  painting_setup.ink.width_mm = plan->sheet.width.value;
+  painting_setup.ink.height_mm = plan->sheet.height.value;
+  auto painting = Painting::open(painting_setup);
+  if (!painting) return tl::unexpected(painting.error());
+  std::unique_ptr<Recorder> recorder;
+  if (!setup.out.empty()) {
+    auto opened = Recorder::open(setup.out);
+    if (!opened) return tl::unexpected(opened.error());
+    recorder = std::move(*opened);
+  }
+  Studio studio(setup, *plan, std::move(*painting), recorder.get());
+  if (auto done = studio.run(); !done) return done;
+  const Picture sheet = studio.finish();
+  if (recorder)
+    if (auto closed = recorder->close(); !closed) return closed;
+  if (setup.picture.empty()) return {};
+  return write_png(setup.picture, sheet, {.overwrite = setup.overwrite});
+}
+
+}  // namespace fude
