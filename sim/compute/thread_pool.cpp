@@ -1,5 +1,6 @@
 #include "sim/compute/thread_pool.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace fude {
@@ -52,7 +53,10 @@ void ThreadPool::run(std::size_t count, Call call, const void* context) {
 }
 
 void ThreadPool::drain() {
-  for (std::size_t i; (i = next_.fetch_add(1, std::memory_order_relaxed)) < count_;) call_(context_, i);
+  // Runs of neighbours, short enough that no thread waits long for the last one.
+  const std::size_t run = std::max<std::size_t>(1, count_ / (8 * static_cast<std::size_t>(threads())));
+  for (std::size_t first; (first = next_.fetch_add(run, std::memory_order_relaxed)) < count_;)
+    for (std::size_t i = first; i < std::min(first + run, count_); ++i) call_(context_, i);
 }
 
 unsigned ThreadPool::await_round(unsigned last) {

@@ -350,10 +350,29 @@ struct Tally {
   }
 };
 
+// Asks for row y of the tile to the right, most likely the next one to be stepped: a step jumps between too
+// many places for the processor to foresee (docs/kernels.md has what that is worth).
+template <bool ink>
+FUNCTION void fetch_ahead(const PlaneView& right, std::size_t now, std::size_t next, int y) {
+  constexpr std::size_t line = 64 / sizeof(float);
+  constexpr std::size_t flowing =
+      (ink ? std::size_t{tile::flowing_planes} : std::size_t{tile::mass}) * tile::side;
+  constexpr std::size_t still = (tile::planes - tile::still_begin) * tile::side;
+  const float* from = right.cells(now, y);
+  const float* to = right.cells(next, y);
+  const float* other = right.cells(tile::still_begin, y);
+#pragma GCC unroll 64
+  for (std::size_t i = 0; i < flowing; i += line) __builtin_prefetch(from + i, 0, 2);
+#pragma GCC unroll 64
+  for (std::size_t i = 0; i < flowing; i += line) __builtin_prefetch(to + i, 1, 2);
+#pragma GCC unroll 64
+  for (std::size_t i = 0; ink && i < still; i += line) __builtin_prefetch(other + i, 1, 2);
+}
+
 // Sweeps a block of rows from below. source(plane, y) finds row y of a plane, -1 to tile::side.
-template <bool ink, class Rows, class Planes, class SourceOf>
-FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceOf& source, int parity,
-                    float* block, std::ptrdiff_t row, TileOutcome& outcome) {
+template <bool ink, class Rows, class Planes, class SourceOf, class Ahead>
+FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceOf& source, const Ahead& ahead,
+                    int parity, const PlaneView& block, TileOutcome& outcome) {
   const std::size_t now = static_cast<std::size_t>(parity) * tile::flowing_planes;
   const std::size_t next = tile::flowing_planes - now;
   Rows rows;
@@ -371,11 +390,9 @@ FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceO
   show(0);
   if constexpr (ink) link_row<Rows>(k, around(-1), rows.linked_row(-1));
   for (int y = 0; y < tile::side; ++y) {
+    ahead(y);
     show(y + 1);
-    const auto at = [&](std::size_t plane) {
-      return block + static_cast<std::ptrdiff_t>(plane) * planes.plane + y * row;
-    };
-    const RowMemory memory{at(now), at(next), at(tile::still_begin)};
+    const RowMemory memory{block.cells(now, y), block.cells(next, y), block.cells(tile::still_begin, y)};
     if constexpr (ink) {
       link_row<Rows>(k, around(y), rows.linked_row(y));
       if (k.relaxation > 1)
@@ -397,21 +414,27 @@ void step_tile(const LatticeNumbers& k, const std::array<float*, tile::neighbour
                TileOutcome& outcome) {
   const auto source = [&](std::size_t plane, int y) -> Source {
     const std::size_t band = y < 0 ? 0 : y >= tile::side ? 6 : 3;
-    const std::size_t offset =
-        plane * tile::plane_stride + static_cast<std::size_t>((y + tile::side) % tile::side) * tile::side;
-    return {blocks[band] + offset + tile::side - 1, blocks[band + 1] + offset, blocks[band + 2] + offset};
+    const auto row = [&](std::size_t i) {
+      return arena_view(blocks[band + i]).cells(plane, (y + tile::side) % tile::side);
+    };
+    return {row(0) + tile::side - 1, row(1), row(2)};
   };
-  sweep<ink, Rows<tile::side>>(k, TilePlanes{}, source, parity, blocks[tile::own], tile::side, outcome);
+  const std::size_t now = static_cast<std::size_t>(parity) * tile::flowing_planes;
+  const auto ahead = [&](int y) {
+    fetch_ahead<ink>(arena_view(blocks[tile::own + 1]), now, tile::flowing_planes - now, y);
+  };
+  sweep<ink, Rows<tile::side>>(k, TilePlanes{}, source, ahead, parity, arena_view(blocks[tile::own]),
+                               outcome);
 }
 
 template <bool ink>
 void step_dense(const LatticeNumbers& k, const PlaneView& block, int parity, TileOutcome& outcome) {
   const auto source = [&](std::size_t plane, int y) -> Source {
-    const float* row = block.origin + static_cast<std::ptrdiff_t>(plane) * block.plane + y * block.row;
+    const float* row = block.cells(plane, y);
     return {row - 1, row, row + dense_width};
   };
-  sweep<ink, Rows<dense_width>>(k, DensePlanes{block.plane}, source, parity, block.origin, block.row,
-                                outcome);
+  sweep<ink, Rows<dense_width>>(
+      k, DensePlanes{block.plane}, source, [](int) {}, parity, block, outcome);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "sim/compute/arena.h"
 #include "sim/ink/lattice.h"
@@ -7,13 +6,8 @@
 namespace fude {
 namespace {
 
-constexpr std::size_t chunk_tiles = 64;
 // Tiles that are no longer needed are looked for this often: waking one costs its textures.
 constexpr int steps_between_sweeps = 32;
-
-PlaneView view_of(float* block) {
-  return {block, tile::side, static_cast<std::ptrdiff_t>(tile::plane_stride)};
-}
 
 class TiledLattice final : public Lattice {
  public:
@@ -22,9 +16,9 @@ class TiledLattice final : public Lattice {
         tile_columns_(tiles_across(setup.columns)),
         tile_rows_(tiles_across(setup.rows)),
         blocks_(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_), nullptr),
-        arena_(tile::block_floats, chunk_tiles),
+        arena_(tile::part_floats, tile::chunk_tiles, tile::parts),
         outside_(arena_.take()) {
-    const PlaneView outside = view_of(outside_);
+    const PlaneView outside = arena_view(outside_);
     for (int y = 0; y < tile::side; ++y) {
       std::fill_n(outside.cells(tile::paper_begin + tile::blocking, y), tile::side, tile::closed_blocking);
       std::fill_n(outside.cells(tile::paper_begin + tile::grain, y), tile::side, tile::closed_grain);
@@ -79,9 +73,10 @@ class TiledLattice final : public Lattice {
 
   AwakeTile woken(TilePlace place) {
     float* memory = arena_.take();
-    std::memset(memory, 0, tile::paper_begin * tile::plane_stride * sizeof(float));
     block(place) = memory;
-    const PlaneView view = view_of(memory);
+    const PlaneView view = arena_view(memory);
+    for (std::size_t part = 0; part < tile::parts; ++part)
+      std::fill_n(memory + static_cast<std::ptrdiff_t>(part) * tile::part_stride, tile::part_floats, 0.0F);
     setup_.texture.fill(place.column * tile::side, place.row * tile::side, view);
     if (const auto kept = asleep_.find(place); kept != asleep_.end()) {
       lay_fixed(view, parity_, kept->second);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 
@@ -21,6 +22,15 @@ TEST(Arena, HandsOutDistinctAlignedZeroBlocksAndTakesThemBack) {
   for (float* block : blocks) arena.give_back(block);
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(blocks.contains(arena.take()));
   EXPECT_EQ(arena.bytes(), bytes);
+}
+
+TEST(Arena, LaysEqualPartsOfItsBlocksTogether) {
+  Arena arena(32, 4, 3);
+  float* first = arena.take();
+  float* second = arena.take();
+  EXPECT_EQ(second - first, 32);
+  for (std::ptrdiff_t part = 0; part < 3; ++part) std::fill_n(first + part * 4 * 32, 32, 1.0F);
+  for (std::ptrdiff_t part = 0; part < 3; ++part) EXPECT_EQ(second[part * 4 * 32], 0);
 }
 
 TEST(Arena, RefusesBlocksThatSplitCacheLines) { EXPECT_THROW(Arena(17, 4), std::invalid_argument); }

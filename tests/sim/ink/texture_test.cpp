@@ -69,8 +69,8 @@ TEST(PaperTexture, AFinerLatticeSeesTheSameFibres) {
 }
 
 TEST(PaperTexture, ClosesWhatIsOffTheSheet) {
-  std::vector<float> block(tile::block_floats);
-  const PlaneView view{block.data(), tile::side, static_cast<std::ptrdiff_t>(tile::plane_stride)};
+  std::vector<float> block(tile::planes * tile::cells);
+  const PlaneView view{block.data(), tile::side, tile::cells};
   PaperTexture(PaperSpec{}, 1, 0.1, 40, 50, true).fill(32, 32, view);
   EXPECT_LE(view.cells(tile::paper_begin + tile::blocking, 17)[7], 1);
   EXPECT_EQ(view.cells(tile::paper_begin + tile::blocking, 17)[8], tile::closed_blocking);

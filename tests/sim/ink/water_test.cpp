@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sim/compute/arena.h"
 #include "sim/compute/instruction_set.h"
 #include "sim/ink/lattice_numbers.h"
 #include "sim/ink/tile_step.h"
@@ -32,9 +33,10 @@ class PeriodicSheet {
     numbers_ = lattice_numbers(paper, 0.1);
     numbers_.relaxation = static_cast<float>(relaxation);
     for (int t = 0; t < tiles; ++t) {
-      memory_.emplace_back(tile::block_floats);
-      std::fill_n(memory_.back().data() + tile::paper_begin * tile::plane_stride, tile::plane_stride,
-                  static_cast<float>(blocking));
+      blocks_.push_back(arena_.take());
+      for (int y = 0; y < tile::side; ++y)
+        std::fill_n(cells(t, tile::paper_begin + tile::blocking, y), tile::side,
+                    static_cast<float>(blocking));
     }
   }
 
@@ -68,9 +70,8 @@ class PeriodicSheet {
   }
 
   float& at(std::size_t i, int x, int y) {
-    return block(
-        x / tile::side)[(static_cast<std::size_t>(parity_) * tile::flowing_planes + i) * tile::plane_stride +
-                        static_cast<std::size_t>(y * tile::side + x % tile::side)];
+    return cells(x / tile::side, static_cast<std::size_t>(parity_) * tile::flowing_planes + i,
+                 y)[x % tile::side];
   }
 
   Flow flow(int x, int y) {
@@ -100,12 +101,14 @@ class PeriodicSheet {
   }
 
  private:
-  float* block(int t) { return memory_[static_cast<std::size_t>(t)].data(); }
+  float* cells(int t, std::size_t plane, int y) { return arena_view(block(t)).cells(plane, y); }
+  float* block(int t) { return blocks_[static_cast<std::size_t>(t)]; }
 
   int tiles_;
   int parity_ = 0;
   LatticeNumbers numbers_;
-  std::vector<std::vector<float>> memory_;
+  Arena arena_{tile::part_floats, tile::chunk_tiles, tile::parts};
+  std::vector<float*> blocks_;
 };
 
 // Amplitude of cos(2 pi x / width) in a row.
