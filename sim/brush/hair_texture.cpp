@@ -5,9 +5,11 @@
 namespace fude {
 namespace {
 
-constexpr int levels = 24;               // along a bundle
-constexpr double edge = 0.12;            // wetness over which one bundle fades, of streak_wetness
-constexpr double share_of_bundle = 0.7;  // the rest differs along it
+constexpr int levels = 24;           // along a bundle
+constexpr double edge = 0.12;        // wetness over which one bundle fades, of streak_wetness
+constexpr int bundles_in_clump = 5;  // wet hair sticks together
+constexpr double share_of_clump = 0.45;
+constexpr double share_of_bundle = 0.35;  // the rest differs along it
 
 // SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t next(std::uint64_t& state) {
@@ -25,12 +27,15 @@ HairTexture::HairTexture(const BrushSpec& spec, std::uint64_t seed)
       streak_wetness_(spec.hair_texture ? spec.streak_wetness : 0) {
   std::uint64_t state = seed;
   dries_at_.reserve(static_cast<std::size_t>(bundles_ * levels));
+  double clump = 0;
   for (int b = 0; b < bundles_; ++b) {
+    if (b % bundles_in_clump == 0) clump = uniform(state);
     const double own = uniform(state);
     double walk = uniform(state);
     for (int level = 0; level < levels; ++level) {
       walk = 0.8 * walk + 0.2 * uniform(state);
-      dries_at_.push_back(static_cast<float>(share_of_bundle * own + (1 - share_of_bundle) * walk));
+      dries_at_.push_back(static_cast<float>(share_of_clump * clump + share_of_bundle * own +
+                                             (1 - share_of_clump - share_of_bundle) * walk));
     }
   }
 }

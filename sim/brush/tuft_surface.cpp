@@ -96,6 +96,9 @@ ContactRing narrowed(const ContactRing& ring, const Vector2d& low, const Vector2
   ContactRing narrow = ring;
   narrow.along = along;
   for (Vector2d& p : narrow.point) p = target + width * (p - low);
+  // Hair runs straight on: what is narrower shows fewer hairs, not all of them drawn together.
+  const double middle = ring.around[ring_points / 2];
+  for (double& around : narrow.around) around = middle + width * (around - middle);
   return narrow;
 }
 
