@@ -1,6 +1,8 @@
 #include "sim/brush/hair_texture.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
 
 namespace fude {
 namespace {
@@ -26,7 +28,8 @@ HairTexture::HairTexture(const BrushSpec& spec, std::uint64_t seed)
     : bundles_(static_cast<int>(spec.hair_count)),
       streak_wetness_(spec.hair_texture ? spec.streak_wetness : 0) {
   std::uint64_t state = seed;
-  dries_at_.reserve(static_cast<std::size_t>(bundles_ * levels));
+  std::vector<double> dryness;
+  dryness.reserve(static_cast<std::size_t>(bundles_ * levels));
   double clump = 0;
   for (int b = 0; b < bundles_; ++b) {
     if (b % bundles_in_clump == 0) clump = uniform(state);
@@ -34,10 +37,19 @@ HairTexture::HairTexture(const BrushSpec& spec, std::uint64_t seed)
     double walk = uniform(state);
     for (int level = 0; level < levels; ++level) {
       walk = 0.8 * walk + 0.2 * uniform(state);
-      dries_at_.push_back(static_cast<float>(share_of_clump * clump + share_of_bundle * own +
-                                             (1 - share_of_clump - share_of_bundle) * walk));
+      dryness.push_back(share_of_clump * clump + share_of_bundle * own +
+                        (1 - share_of_clump - share_of_bundle) * walk);
     }
   }
+  // Ranks in place of values: half as wet, half as much hair leaves ink.
+  std::vector<std::size_t> order(dryness.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return dryness[i] < dryness[j]; });
+  dries_at_.resize(dryness.size());
+  for (std::size_t rank = 0; rank < order.size(); ++rank)
+    dries_at_[order[rank]] =
+        static_cast<float>(static_cast<double>(rank) / static_cast<double>(order.size()));
 }
 
 double HairTexture::inked(double along, double around, double wetness) const {
