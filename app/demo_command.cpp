@@ -9,7 +9,7 @@
 #include "app/progress_line.h"
 #include "rig/share_folder.h"
 #include "sim/optics/png_file.h"
-#ifdef FUDE_WITH_WINDOW
+#ifdef FUDE_WINDOW
 #include "app/studio/studio.h"
 #endif
 
@@ -45,8 +45,13 @@ Result<void> run(const PaintingOptions& options) {
   if (!file) return tl::unexpected(file.error());
   const auto session = read_session(*file);
   if (!session) return tl::unexpected(session.error());
-#ifdef FUDE_WITH_WINDOW
-  if (display_exists()) return play_in_studio(*session, *settings);
+#ifdef FUDE_WINDOW
+  const auto is_set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value;
+  };
+  if (is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"))
+    return run_studio({.settings = *settings, .played = *session, .script = {}, .out = {}, .picture = {}});
 #endif
   return paint_into_picture(*session, *settings);
 }
