@@ -350,8 +350,10 @@ struct Tally {
   }
 };
 
-// Asks for row y of the tile to the right, most likely the next one to be stepped: a step jumps between too
-// many places for the processor to foresee (docs/kernels.md has what that is worth).
+constexpr int rows_ahead = 4;
+
+// Asks for row y of the tile to the right, whose edge is needed here and which is most likely stepped next: a
+// step jumps between too many places for the processor to foresee (docs/kernels.md has what that is worth).
 template <bool ink>
 FUNCTION void fetch_ahead(const PlaneView& right, std::size_t now, std::size_t next, int y) {
   constexpr std::size_t line = 64 / sizeof(float);
@@ -386,11 +388,12 @@ FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceO
     return {{rows.shown_row(y - 1), rows.shown_row(y), rows.shown_row(y + 1)},
             {rows.linked_row(y - 1), rows.linked_row(y)}};
   };
+  for (int y = 0; y < rows_ahead; ++y) ahead(y);
   show(-1);
   show(0);
   if constexpr (ink) link_row<Rows>(k, around(-1), rows.linked_row(-1));
   for (int y = 0; y < tile::side; ++y) {
-    ahead(y);
+    if (y + rows_ahead < tile::side) ahead(y + rows_ahead);
     show(y + 1);
     const RowMemory memory{block.cells(now, y), block.cells(next, y), block.cells(tile::still_begin, y)};
     if constexpr (ink) {
