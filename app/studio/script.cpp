@@ -33,9 +33,11 @@ std::optional<StudioEvent> event_of(const std::string& verb, std::istringstream&
     std::string name;
     words >> name;
     if (const auto key = keys.find(name); key != keys.end()) return key->second;
-  } else if (verb == "save") {
+  } else if (verb == "save" || verb == "shot") {
     std::string file;
-    if (std::getline(words >> std::ws, file) && !file.empty()) return SaveAs{file};
+    if (!std::getline(words >> std::ws, file) || file.empty()) return std::nullopt;
+    if (verb == "save") return SaveAs{file};
+    return Shot{file};
   }
   return std::nullopt;
 }

@@ -4,7 +4,8 @@
 //   SECONDS move X Y        SECONDS key NAME       (undo redo load reshape dry fit)
 //   SECONDS press           SECONDS zoom FACTOR    (about the middle of the window)
 //   SECONDS release         SECONDS save FILE      (the sheet as it stands, a PNG)
-//   SECONDS pressure P      SECONDS quit
+//   SECONDS pressure P      SECONDS shot FILE      (the window as it is seen, a PNG)
+//                           SECONDS quit
 #pragma once
 
 #include <string>
@@ -33,9 +34,12 @@ struct Zoom {
 struct SaveAs {
   std::string file;
 };
+struct Shot {
+  std::string file;
+};
 struct Quit {};
 
-using StudioEvent = std::variant<MoveTo, Button, Press, Zoom, StudioKey, SaveAs, Quit>;
+using StudioEvent = std::variant<MoveTo, Button, Press, Zoom, StudioKey, SaveAs, Shot, Quit>;
 
 struct ScriptedEvent {
   double at_s;

@@ -2,7 +2,9 @@
 
 #include <imgui.h>
 
+#include <atomic>
 #include <chrono>
+#include <mutex>
 #include <utility>
 
 #include "app/studio/mouse_pen.h"
@@ -13,6 +15,7 @@
 #include "app/studio/window.h"
 #include "rig/live_painting.h"
 #include "rig/session_summary.h"
+#include "rig/tablets.h"
 #include "sim/optics/png_file.h"
 
 namespace fude {
@@ -22,6 +25,19 @@ using StudioClock = std::chrono::steady_clock;  // CLOCK_MONOTONIC, as the rig's
 
 Timestamp now() {
   return Timestamp(std::chrono::duration_cast<Duration>(StudioClock::now().time_since_epoch()));
+}
+
+// The largest tablet that is there, as a replay will have it; else A5.
+Extent sheet_for_the_hand() {
+  Extent sheet;
+  if (const auto found = find_pen_tablets())
+    for (const FoundDevice& tablet : *found)
+      if (const auto area = active_area(tablet.description); area && tablet.access) {
+        sheet.width = std::max(sheet.width, area->width);
+        sheet.height = std::max(sheet.height, area->height);
+      }
+  if (sheet.width.value > 0) return sheet;
+  return {Millimetres(210), Millimetres(148)};
 }
 
 // Saved pictures get the first free name.
@@ -52,6 +68,7 @@ class Studio {
     mouse_device_ = ++devices_;
     if (recorder) recorder->add(mouse);
     mouse_mapping_ = *mapping_for(mouse, plan.sheet);
+    if (setup.script.empty()) listen_to_tablets(recorder);
   }
 
   Result<void> run() {
@@ -68,6 +85,8 @@ class Studio {
       play();
       if (const auto changes = live_.take_changes()) image_->show(*changes);
       draw();
+      window_->draw_frame();
+      take_shots();
       window_->end_frame();
       if (failed_) break;
     }
@@ -79,6 +98,7 @@ class Studio {
 
   // The brush leaves the paper, and the sheet is what a replay of the session makes of it.
   Picture finish() {
+    tablets_.reset();
     mouse_.over_paper = mouse_.pressed = false;
     send_mouse();
     History& history = live_.stop();
@@ -87,6 +107,36 @@ class Studio {
   }
 
  private:
+  struct KnownTablet {
+    DeviceNumber number;
+    std::optional<TabletMapping> mapping;  // none: its size is not known
+  };
+
+  // Their readers hand samples to the painting on their own threads. Without udev there is the mouse.
+  void listen_to_tablets(Recorder* recorder) {
+    TabletListener listener;
+    listener.appeared = [this, recorder](std::size_t, const DeviceDescription& description) {
+      const auto mapping = mapping_for(description, plan_.sheet);
+      const std::lock_guard lock(tablets_mutex_);
+      if (recorder) recorder->add(description);
+      known_tablets_.push_back({++devices_, mapping ? std::optional(*mapping) : std::nullopt});
+      if (!mapping) notice_ = mapping.error().message;
+    };
+    listener.heard = [this](std::size_t tablet, const Transfer&, const std::optional<PenSample>& pen) {
+      if (!pen) return;
+      const std::lock_guard lock(tablets_mutex_);
+      const KnownTablet& known = known_tablets_[tablet];
+      if (!known.mapping) return;
+      live_.pen({known.number, *pen, *known.mapping});
+      mouse_shown_ = false;
+    };
+    listener.refused = [this](const Error& error) {
+      const std::lock_guard lock(tablets_mutex_);
+      notice_ = error.message;
+    };
+    if (auto opened = Tablets::open(std::move(listener))) tablets_ = std::move(*opened);
+  }
+
   WindowEvents events() {
     return {.moved = [this](const Eigen::Vector2d& at) { move_to(view_.to_paper(at)); },
             .button = [this](bool pressed) { handle(Button{pressed}); },
@@ -124,6 +174,7 @@ class Studio {
     if (!done) failed_ = done.error();
     saved_ = save.file;
   }
+  void on(const Shot& shot) { shots_.push_back(shot.file); }
   void on(const Quit&) { quitting_ = true; }
   void on(StudioKey key) {
     switch (key) {
@@ -155,14 +206,18 @@ class Studio {
   }
 
   void send_mouse() {
-    live_.pen({mouse_device_, mouse_.sample(now()), mouse_mapping_});
+    live_.pen({mouse_device_, mouse_.sample(hand_time_.value_or(now())), mouse_mapping_});
     mouse_shown_ = true;
   }
 
   void inject() {
     while (next_scripted_ < setup_.script.size() &&
-           seconds(now() - start_) >= setup_.script[next_scripted_].at_s && !quitting_)
-      handle(setup_.script[next_scripted_++].what);
+           seconds(now() - start_) >= setup_.script[next_scripted_].at_s && !quitting_) {
+      const ScriptedEvent& event = setup_.script[next_scripted_++];
+      hand_time_ = start_ + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(event.at_s));
+      handle(event.what);
+    }
+    hand_time_.reset();
   }
 
   // The recorded hand moves here as it moved then.
@@ -187,6 +242,12 @@ class Studio {
       live_.act(session.actions[next_action_].action);
   }
 
+  void take_shots() {
+    for (const std::string& file : std::exchange(shots_, {}))
+      if (auto done = write_png(file, window_->shown(), {.depth = 8, .overwrite = setup_.overwrite}); !done)
+        failed_ = done.error();
+  }
+
   void draw() {
     const LiveStatus status = live_.status();
     ImDrawList& canvas = *ImGui::GetBackgroundDrawList();
@@ -204,9 +265,10 @@ class Studio {
     const PanelChoice choice = draw_panel(status, mouse_shown_, mouse_, step_ms_);
     if (choice.key) handle(*choice.key);
     if (choice.save) handle(SaveAs{free_picture_name()});
-    if (!saved_.empty())
-      canvas.AddText(ImVec2(12, static_cast<float>(view_.window.y()) - 24), IM_COL32(255, 255, 255, 255),
-                     ("saved " + saved_).c_str());
+    const std::lock_guard lock(tablets_mutex_);
+    const std::string line = saved_.empty() ? notice_ : "saved " + saved_;
+    canvas.AddText(ImVec2(12, static_cast<float>(view_.window.y()) - 24), IM_COL32(255, 255, 255, 255),
+                   line.c_str());
   }
 
   const StudioSetup& setup_;
@@ -221,16 +283,22 @@ class Studio {
   DeviceNumber devices_ = 0;
   DeviceNumber mouse_device_ = 0;
   LivePainting live_;
+  std::mutex tablets_mutex_;
+  std::vector<KnownTablet> known_tablets_;
+  std::string notice_;  // what a tablet lacks
+  std::unique_ptr<Tablets> tablets_;
   std::unique_ptr<Window> window_;
   std::optional<SheetImage> image_;
   View view_;
   Timestamp start_{};
+  std::optional<Timestamp> hand_time_;  // of a scripted event; none: the present
   std::size_t next_scripted_ = 0;
   std::size_t next_pen_ = 0;
   std::size_t next_action_ = 0;
-  bool mouse_shown_ = true;
+  std::atomic<bool> mouse_shown_ = true;
   bool quitting_ = false;
   std::string saved_;
+  std::vector<std::string> shots_;  // of the window, wanted at the end of this frame
   std::optional<Error> failed_;
 };
 
@@ -239,7 +307,7 @@ class Studio {
 Result<void> run_studio(const StudioSetup& setup) {
   const Session blank;
   SheetWish wish = setup.settings.wish;
-  if (!setup.played && !wish.sheet) wish.sheet = Extent{Millimetres(210), Millimetres(148)};
+  if (!setup.played && !wish.sheet) wish.sheet = sheet_for_the_hand();
   const auto plan = plan_sheet(setup.played ? *setup.played : blank, wish);
   if (!plan) return tl::unexpected(plan.error());
   PaintingSetup painting_setup = setup.settings.painting;

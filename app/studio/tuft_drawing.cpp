@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <utility>
 #include <vector>
 
 namespace fude {
@@ -12,7 +13,7 @@ constexpr ImU32 hair = IM_COL32(60, 48, 40, 150);
 constexpr ImU32 edge = IM_COL32(30, 22, 18, 220);
 
 // A lamp at the upper left: what is a millimetre above the paper throws its shadow so far.
-const Eigen::Vector2d shadow_per_mm(0.45, -0.35);
+const Eigen::Vector2d shadow_per_mm(0.3, -0.2);
 // Seen a little from the painter's side: height leans away.
 const Eigen::Vector2d rise_per_mm(0, 0.25);
 
@@ -38,12 +39,15 @@ void fill(ImDrawList& canvas, const View& view, const TuftSurface& sections,
 }  // namespace
 
 void draw_tuft(ImDrawList& canvas, const View& view, const TuftShape& tuft) {
+  // Smoothed edges would show as seams between the sections.
+  const ImDrawListFlags flags = std::exchange(canvas.Flags, canvas.Flags & ~ImDrawListFlags_AntiAliasedFill);
   fill(canvas, view, tuft.sections, shadow_per_mm, shadow);
   fill(canvas, view, tuft.sections, rise_per_mm, hair);
   std::vector<ImVec2> spine;
   for (const Eigen::Vector3d& node : tuft.spine) spine.push_back(on_screen(view, node, rise_per_mm));
   if (spine.size() > 1)
     canvas.AddPolyline(spine.data(), static_cast<int>(spine.size()), edge, ImDrawFlags_None, 1.5F);
+  canvas.Flags = flags;
 }
 
 }  // namespace fude

@@ -99,10 +99,23 @@ bool Window::begin_frame() {
   return true;
 }
 
-void Window::end_frame() {
+void Window::draw_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  glfwSwapBuffers(window_);
+}
+
+void Window::end_frame() { glfwSwapBuffers(window_); }
+
+Picture Window::shown() const {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  Picture picture(width, height);
+  glReadBuffer(GL_BACK);
+  glPixelStorei(GL_PACK_ALIGNMENT, 2);
+  for (int y = 0; y < height; ++y)
+    glReadPixels(0, height - 1 - y, width, 1, GL_RGB, GL_UNSIGNED_SHORT, picture.row(y).data());
+  return picture;
 }
 
 Eigen::Vector2d Window::size() const {

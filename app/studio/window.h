@@ -7,6 +7,7 @@
 #include <string>
 
 #include "signal/result.h"
+#include "sim/optics/picture.h"
 
 struct GLFWwindow;
 
@@ -31,8 +32,11 @@ class Window {
 
   // Waits for the next frame's time, calls the events, clears and begins a frame; false when it was closed.
   bool begin_frame();
+  void draw_frame();
   void end_frame();
   Eigen::Vector2d size() const;
+  // What the frame shows, between drawing and ending it.
+  Picture shown() const;
 
  private:
   explicit Window(WindowEvents events) : events_(std::move(events)) {}
