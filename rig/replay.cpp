@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <span>
 
 #include "rig/history.h"
 #include "rig/inputs.h"
@@ -86,9 +87,14 @@ Picture picture_of(const Ink& ink, const Palette& palette) {
   const int columns = ink.columns();
   const int rows = ink.rows();
   Picture picture(columns, rows);
-  for (int y = 0; y < rows; ++y) {
-    const InkRegion row = ink.read({0, y, columns, 1});
-    colour_row(row.pigment, palette, picture.row(rows - 1 - y));
+  // Strips of a tile's height: less would bring a graphics card's tiles here many times over.
+  constexpr int strip = 32;
+  for (int bottom = 0; bottom < rows; bottom += strip) {
+    const InkRegion cells = ink.read({0, bottom, columns, strip});
+    const auto width = static_cast<std::size_t>(columns);
+    for (int y = 0; y < cells.rect.rows; ++y)
+      colour_row(std::span(cells.pigment).subspan(static_cast<std::size_t>(y) * width, width), palette,
+                 picture.row(rows - 1 - (bottom + y)));
   }
   return picture;
 }
