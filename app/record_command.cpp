@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -19,10 +18,9 @@ struct Options {
 
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  std::error_code ignored;
-  if (options.force) std::filesystem::remove(options.out, ignored);
-  auto recording = RecordingSession::start(
-      options.out, [](const std::string& warning) { std::fprintf(stderr, "fude: %s\n", warning.c_str()); });
+  auto recording = RecordingSession::start(options.out, options.force, [](const std::string& warning) {
+    std::fprintf(stderr, "fude: %s\n", warning.c_str());
+  });
   if (!recording) return report(recording.error());
   std::fprintf(stderr, "recording into %s; Ctrl-C ends it\n", options.out.c_str());
   const auto limit = options.seconds > 0 ? std::optional(std::chrono::duration_cast<Duration>(

@@ -8,7 +8,7 @@
 namespace fude {
 
 Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
-    const std::filesystem::path& session, std::function<void(const std::string&)> warn) {
+    const std::filesystem::path& session, bool overwrite, std::function<void(const std::string&)> warn) {
   // Before the file is made: a session of nothing helps nobody.
   const auto found = find_pen_tablets();
   if (!found) return tl::unexpected(found.error());
@@ -17,6 +17,8 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
   if (std::none_of(found->begin(), found->end(), [](const FoundDevice& device) { return device.access; }))
     return failure(Fault::no_access, access_advice(found->front().node));
 
+  std::error_code ignored;
+  if (overwrite) std::filesystem::remove(session, ignored);
   auto recorder = Recorder::open(session);
   if (!recorder) return tl::unexpected(recorder.error());
   std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder)));

@@ -23,10 +23,11 @@ struct RecordedStream {
 
 class RecordingSession {
  public:
-  // Records every tablet that is there or comes. `warn` gets what the painter should know meanwhile,
+  // Records every tablet that is there or comes; an existing session is replaced only with `overwrite`,
+  // and only when there is a tablet to record. `warn` gets what the painter should know meanwhile,
   // from any thread. Errors: not_found where no tablet is plugged in, no_access where none may be
   // read, those of the recorder.
-  static Result<std::unique_ptr<RecordingSession>> start(const std::filesystem::path& session,
+  static Result<std::unique_ptr<RecordingSession>> start(const std::filesystem::path& session, bool overwrite,
                                                          std::function<void(const std::string&)> warn);
 
   // Ends and closes the session. Errors: those of the disk; what was written before is kept.

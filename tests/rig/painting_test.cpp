@@ -3,6 +3,7 @@
 #include "rig/inputs.h"
 #include "rig/live_painting.h"
 #include "rig/replay.h"
+#include "rig/share_folder.h"
 #include "tests/rig/gesture.h"
 
 namespace fude {
@@ -10,6 +11,7 @@ namespace {
 
 ReplaySettings settings(int threads = 1) {
   ReplaySettings s;
+  s.painting.brush = read_brush_spec(find_shared("brushes", "round-goat", ".toml")->string()).value();
   s.painting.ink.cell_mm = 0.2;
   s.painting.ink.threads = threads;
   s.reach = reach_of(s.painting.brush);

@@ -116,7 +116,7 @@ TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "recorded.fude";
   std::filesystem::remove(file);
   MockTablet tablet(testbed_.get(), pen("1"), 5);
-  auto recording = RecordingSession::start(file, [](const std::string&) {});
+  auto recording = RecordingSession::start(file, false, [](const std::string&) {});
   ASSERT_TRUE(recording) << recording.error().message;
   for (int i = 1; i <= 50; ++i) {
     draw(tablet, i);
@@ -144,7 +144,7 @@ TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
 
 TEST_F(LiveTablets, WithoutATabletNoSessionIsMade) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "none.fude";
-  const auto recording = RecordingSession::start(file, [](const std::string&) {});
+  const auto recording = RecordingSession::start(file, false, [](const std::string&) {});
   ASSERT_FALSE(recording);
   EXPECT_EQ(recording.error().fault, Fault::not_found);
   EXPECT_FALSE(std::filesystem::exists(file));
