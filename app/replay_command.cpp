@@ -32,7 +32,7 @@ Result<void> write_report(const std::string& path, const ReplayReport& report) {
 Result<void> check_target(const std::string& path, bool force) {
   std::error_code ignored;
   if (!path.empty() && !force && std::filesystem::exists(path, ignored))
-    return failure(Fault::usage, path + " exists already; choose another name or give --force");
+    return failure(Fault::exists, path + " exists already; choose another name or give --force");
   return {};
 }
 

@@ -25,7 +25,7 @@ std::optional<double> number(const std::optional<Quantity<Unit>>& quantity) {
 Result<SessionWriter> SessionWriter::create(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored))
-    return failure(Fault::usage, path.string() + " exists already; choose another name or give --force");
+    return failure(Fault::exists, path.string() + " exists already; choose another name or give --force");
   auto db = Database::open(path, OpenMode::create);
   if (!db) return tl::unexpected(db.error());
   // Exclusive locking keeps a second program out; WAL with FULL survives a power cut.

@@ -16,7 +16,7 @@ namespace fude {
 // One thread at a time. Every error leaves what was flushed before it in the file.
 class SessionWriter {
  public:
-  // Errors: usage where the file exists already; no_access, storage, busy.
+  // Errors: exists; no_access, storage, busy.
   static Result<SessionWriter> create(const std::filesystem::path& path);
 
   Result<void> set(const std::string& key, const std::string& value);

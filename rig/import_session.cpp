@@ -67,7 +67,9 @@ Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecordin
                                                      const std::filesystem::path& session, bool overwrite) {
   std::error_code error;
   if (!overwrite && std::filesystem::exists(session, error))
-    return failure(Fault::usage, session.string() + " exists already; choose another name or give --force");
+    return failure(Fault::exists, session.string() + " exists already; choose another name or give --force");
+  if (std::filesystem::exists(session, error) && !std::filesystem::is_regular_file(session, error))
+    return failure(Fault::no_access, session.string() + " is no file; give the name of a session (.fude)");
   const std::filesystem::path unfinished = session.string() + ".part";
   std::filesystem::remove(unfinished, error);
   const auto write = [&]() -> Result<std::vector<ImportedStream>> {

@@ -33,7 +33,7 @@ struct ImportReceipt {
 };
 
 // Writes recordings, and what the painter did, as one session: it appears whole or not at all.
-// Errors: usage where `session` exists and may not be replaced; no_access; storage.
+// Errors: exists where `session` may not be replaced; no_access; storage.
 Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecording> recordings,
                                                      std::span<const Action> actions,
                                                      const std::string& origin,

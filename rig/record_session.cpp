@@ -18,7 +18,8 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
     return failure(Fault::no_access, access_advice(found->front().node));
 
   std::error_code ignored;
-  if (overwrite) std::filesystem::remove(session, ignored);
+  if (overwrite && std::filesystem::is_regular_file(session, ignored))
+    std::filesystem::remove(session, ignored);
   auto recorder = Recorder::open(session);
   if (!recorder) return tl::unexpected(recorder.error());
   std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder)));

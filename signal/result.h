@@ -13,6 +13,7 @@ namespace fude {
 enum class Fault {
   usage,        // the caller asked for something that has no meaning: exit status 2
   not_found,    // a file or device is not there
+  exists,       // a file is there that may not be replaced
   no_access,    // permissions
   malformed,    // bytes that do not follow their format
   unsupported,  // well formed, but beyond what this build reads

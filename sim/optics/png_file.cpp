@@ -31,7 +31,7 @@ tl::unexpected<Error> refused(int error_number, const std::filesystem::path& pat
     case EROFS:
       return failure(Fault::no_access, place + "the disk is read-only; choose another folder");
     case EEXIST:
-      return failure(Fault::usage, place + "it exists already; choose another name or add --force");
+      return failure(Fault::exists, place + "it exists already; choose another name or add --force");
     default:
       return failure(Fault::storage, place + std::strerror(error_number));
   }
@@ -141,8 +141,12 @@ Result<void> write_png(const std::filesystem::path& path, const Picture& picture
   if (picture.width > most_pixels || picture.height > most_pixels)
     return failure(Fault::usage,
                    "a PNG has at most a million pixels a side: choose larger cells or a smaller sheet");
-  if (struct stat existing; !options.overwrite && lstat(path.c_str(), &existing) == 0)
-    return refused(EEXIST, path);
+  if (struct stat existing; lstat(path.c_str(), &existing) == 0) {
+    if (!options.overwrite) return refused(EEXIST, path);
+    // Moving a picture onto a device node would replace the node.
+    if (!S_ISREG(existing.st_mode))
+      return failure(Fault::no_access, path.string() + " is no file; give the name of a picture (.png)");
+  }
 
   PartFile part(path);
   if (part.descriptor() < 0) return refused(errno, path);

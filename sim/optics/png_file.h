@@ -15,7 +15,7 @@ struct PngOptions {
 
 // The file appears whole or not at all: it is written beside its place and moved there when it is on
 // the disk. At most a million pixels a side (libpng's limit).
-// Errors: usage (depth, no pixels, too large, or the file exists and may not be replaced), not_found (no
+// Errors: usage (depth, no pixels, too large), exists, not_found (no
 // such folder), no_access, storage (disk full or failing).
 Result<void> write_png(const std::filesystem::path& path, const Picture& picture,
                        const PngOptions& options = {});

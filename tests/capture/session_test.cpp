@@ -112,7 +112,7 @@ TEST_F(SessionFile, AnExistingFileIsNeverOverwritten) {
   std::ofstream(path()) << "mine";
   const auto out = SessionWriter::create(path());
   ASSERT_FALSE(out.has_value());
-  EXPECT_EQ(out.error().fault, Fault::usage);
+  EXPECT_EQ(out.error().fault, Fault::exists);
 }
 
 TEST_F(SessionFile, ASecondProgramIsToldWhoIsBusy) {

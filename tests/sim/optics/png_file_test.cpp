@@ -108,7 +108,7 @@ TEST_F(PngFile, ReplacesNothingUnlessTold) {
   ASSERT_TRUE(write_png(file, gradient(4, 4)));
   const auto refused = write_png(file, gradient(8, 8));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::usage);
+  EXPECT_EQ(refused.error().fault, Fault::exists);
   EXPECT_NE(refused.error().message.find("--force"), std::string::npos);
   EXPECT_EQ(read(file).picture.width, 4);
   ASSERT_TRUE(write_png(file, gradient(8, 8), {.overwrite = true}));
@@ -149,6 +149,13 @@ TEST_F(PngFile, RefusesWhatIsNoPicture) {
   EXPECT_EQ(write_png(file, gradient(2, 2), {.depth = 12}).error().fault, Fault::usage);
   EXPECT_EQ(write_png(file, Picture(1'000'001, 1)).error().fault, Fault::usage);
   EXPECT_EQ(files(), 0);
+}
+
+TEST(PngFile, ADeviceNodeIsNeverReplaced) {
+  const auto refused = write_png("/dev/null", gradient(2, 2), {.overwrite = true});
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().fault, Fault::no_access);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 }  // namespace
