@@ -52,13 +52,17 @@ void add_ink(CLI::App& bench, int& status) {
     InkBenchSetup& s = options->setup;
     s.stage = options->stage == "lattice" ? Stage::water : Stage::full;
     s.instruction_set = instruction_set_named(options->isa);
+    s.backend = options->backend == "auto" ? best_ink_backend()
+                : options->backend == "gl" ? InkBackend::gl
+                                           : InkBackend::cpu;
+    const bool on_card = s.backend == InkBackend::gl;
     const auto b = bench_ink(s);
     if (!b) {
       status = report(b.error());
       return;
     }
-    print(Json{{"backend", options->backend},
-               {"isa", name_of(b->instruction_set)},
+    print(Json{{"backend", on_card ? "gl" : "cpu"},
+               {"isa", on_card ? "" : name_of(b->instruction_set)},
                {"threads", b->threads},
                {"cells", b->cells},
                {"wet_cells", b->wet_cells},

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "sim/compute/copy_bandwidth.h"
-#include "sim/ink/ink.h"
 #include "sim/ink/sheet_state.h"
 
 namespace fude {
@@ -58,6 +57,58 @@ double milliseconds(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
 }
 
+// Copies between the steps, so that both see the same neighbours.
+template <class StepOnce>
+void measure(const InkBenchSetup& setup, ThreadPool& threads, const StepOnce& step_once,
+             InkBenchResult& result) {
+  const double bytes = charged_bytes(setup.stage);
+  const auto copied =
+      std::max(copy_least, static_cast<std::size_t>(bytes / 2 * static_cast<double>(result.wet_cells)));
+  constexpr int rounds = 4;
+  std::vector<double> ms;
+  for (int round = 0; round < rounds; ++round) {
+    result.copy_gb_s = std::max(result.copy_gb_s, copy_gigabytes_per_second(threads, copied, 3));
+    for (int i = round; i < setup.steps; i += rounds) {
+      const auto start = std::chrono::steady_clock::now();
+      step_once();
+      ms.push_back(milliseconds(start));
+    }
+  }
+  std::ranges::sort(ms);
+  result.median_ms = ms[ms.size() / 2];
+  result.p99_ms = ms[std::min(ms.size() - 1, ms.size() * 99 / 100)];
+  result.mlups = static_cast<double>(result.wet_cells) / result.median_ms * 1e-3;
+  result.bandwidth_fraction = result.mlups * 1e-3 * bytes / result.copy_gb_s;
+}
+
+Result<InkBenchResult> bench_gl(const InkBenchSetup& setup) {
+  if (setup.stage != Stage::full || setup.dense)
+    return failure(
+        Fault::unsupported,
+        "OpenGL steps all of the ink on tiles; leave out --stage lattice and --dense, or use --backend cpu");
+  const int side = setup.side_cells;
+  InkSetup sheet;
+  sheet.backend = InkBackend::gl;
+  sheet.width_mm = sheet.height_mm = side * cell_mm;
+  const auto ink = open_ink(sheet);
+  if (!ink) return tl::unexpected(ink.error());
+  (*ink)->apply({{}, 1, bars(side, setup.wet)});
+  for (int i = 0; i < 5; ++i) (*ink)->step();
+  InkBenchResult result{{}, setup.threads, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)};
+  for (int row = 0; row < side; ++row)
+    for (const float water : (*ink)->read({0, row, side, 1}).flow_water) result.wet_cells += water > 0;
+  result.active_cells = (*ink)->active_cells();
+  ThreadPool threads(setup.threads);
+  measure(
+      setup, threads,
+      [&] {
+        (*ink)->step();
+        (void)(*ink)->read({0, 0, 1, 1});  // waits for the card
+      },
+      result);
+  return result;
+}
+
 }  // namespace
 
 Result<InkBenchResult> bench_ink(const InkBenchSetup& setup) {
@@ -66,6 +117,7 @@ Result<InkBenchResult> bench_ink(const InkBenchSetup& setup) {
   if (!(setup.wet > 0 && setup.wet <= 1)) return failure(Fault::usage, "--wet must be above 0 and at most 1");
   if (setup.steps < 1) return failure(Fault::usage, "--steps must be at least 1");
   if (setup.threads < 1 || setup.threads > 1024) return failure(Fault::usage, "--threads must be 1 to 1024");
+  if (setup.backend == InkBackend::gl) return bench_gl(setup);
   const auto set = choose_instruction_set(setup.instruction_set);
   if (!set) return tl::unexpected(set.error());
 
@@ -92,26 +144,9 @@ Result<InkBenchResult> bench_ink(const InkBenchSetup& setup) {
 
   InkBenchResult result{*set, setup.threads, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)};
   result.wet_cells = wet_cells(*lattice);
-  std::vector<double> ms;
-  const double bytes = charged_bytes(setup.stage);
-  const auto copied =
-      std::max(copy_least, static_cast<std::size_t>(bytes / 2 * static_cast<double>(result.wet_cells)));
-  // Copies between the steps, so that both see the same neighbours.
-  constexpr int rounds = 4;
-  for (int round = 0; round < rounds; ++round) {
-    result.copy_gb_s = std::max(result.copy_gb_s, copy_gigabytes_per_second(threads, copied, 3));
-    for (int i = round; i < setup.steps; i += rounds) {
-      const auto start = std::chrono::steady_clock::now();
-      lattice->step(setup.stage);
-      ms.push_back(milliseconds(start));
-    }
-  }
-  std::ranges::sort(ms);
+  measure(
+      setup, threads, [&] { lattice->step(setup.stage); }, result);
   result.active_cells = lattice->awake().size() * tile::cells;
-  result.median_ms = ms[ms.size() / 2];
-  result.p99_ms = ms[std::min(ms.size() - 1, ms.size() * 99 / 100)];
-  result.mlups = static_cast<double>(result.wet_cells) / result.median_ms * 1e-3;
-  result.bandwidth_fraction = result.mlups * 1e-3 * bytes / result.copy_gb_s;
   return result;
 }
 

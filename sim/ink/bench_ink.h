@@ -5,6 +5,7 @@
 
 #include "signal/result.h"
 #include "sim/compute/instruction_set.h"
+#include "sim/ink/ink.h"
 #include "sim/ink/lattice.h"
 
 namespace fude {
@@ -14,6 +15,7 @@ struct InkBenchSetup {
   double wet = 1;        // share of it that is wet, in upright bars
   int steps = 200;
   Stage stage = Stage::full;
+  InkBackend backend = InkBackend::cpu;
   int threads = 1;
   std::optional<InstructionSet> instruction_set;
   bool dense = false;
@@ -32,7 +34,9 @@ struct InkBenchResult {
   double bandwidth_fraction = 0;  // bytes a wet cell (72 for water, 144 for full) times mlups, of copy_gb_s
 };
 
-// Fault::usage where a number is out of range.
+// The OpenGL back-end steps all of the ink on tiles; each of its steps is waited for.
+// Fault::usage where a number is out of range; Fault::unsupported for another stage or dense on OpenGL, and
+// where the back-end or the instruction set is missing here.
 Result<InkBenchResult> bench_ink(const InkBenchSetup& setup);
 
 }  // namespace fude
