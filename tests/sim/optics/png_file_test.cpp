@@ -151,7 +151,7 @@ TEST_F(PngFile, RefusesWhatIsNoPicture) {
   EXPECT_EQ(files(), 0);
 }
 
-TEST(PngFile, ADeviceNodeIsNeverReplaced) {
+TEST_F(PngFile, ADeviceNodeIsNeverReplaced) {
   const auto refused = write_png("/dev/null", gradient(2, 2), {.overwrite = true});
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().fault, Fault::no_access);
