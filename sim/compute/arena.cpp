@@ -20,21 +20,21 @@ std::size_t chunk_bytes(std::size_t floats) {
 
 void Arena::Release::operator()(float* chunk) const { std::free(chunk); }
 
-Arena::Arena(std::size_t part_floats, std::size_t blocks_in_chunk, std::size_t parts)
-    : part_floats_(part_floats), blocks_in_chunk_(blocks_in_chunk), parts_(parts) {
-  if (part_floats % 16 != 0 || blocks_in_chunk == 0 || parts == 0)
+Arena::Arena(std::size_t block_floats, std::size_t blocks_in_chunk)
+    : block_floats_(block_floats), blocks_in_chunk_(blocks_in_chunk) {
+  if (block_floats % 16 != 0 || blocks_in_chunk == 0)
     throw std::invalid_argument("arena blocks of whole cache lines");
 }
 
 void Arena::grow() {
-  const std::size_t bytes = chunk_bytes(part_floats_ * blocks_in_chunk_ * parts_);
+  const std::size_t bytes = chunk_bytes(block_floats_ * blocks_in_chunk_);
   void* memory = std::aligned_alloc(huge_page, bytes);
   if (memory == nullptr) throw std::bad_alloc();
   ::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: tiles spread over many small pages miss the TLB
   std::memset(memory, 0, bytes);
   chunks_.emplace_back(static_cast<float*>(memory));
   // The last block first: blocks are handed out in the order of their addresses.
-  for (std::size_t i = blocks_in_chunk_; i-- > 0;) free_.push_back(chunks_.back().get() + i * part_floats_);
+  for (std::size_t i = blocks_in_chunk_; i-- > 0;) free_.push_back(chunks_.back().get() + i * block_floats_);
 }
 
 float* Arena::take() {
@@ -47,7 +47,7 @@ float* Arena::take() {
 void Arena::give_back(float* block) { free_.push_back(block); }
 
 std::size_t Arena::bytes() const {
-  return chunks_.size() * chunk_bytes(part_floats_ * blocks_in_chunk_ * parts_);
+  return chunks_.size() * chunk_bytes(block_floats_ * blocks_in_chunk_);
 }
 
 }  // namespace fude

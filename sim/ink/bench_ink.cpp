@@ -45,11 +45,10 @@ Deposit bars(int side, double wet) {
 
 std::size_t wet_cells(Lattice& lattice) {
   std::size_t wet = 0;
-  const std::size_t first = static_cast<std::size_t>(lattice.parity()) * tile::flowing_planes;
   for (const AwakeTile& t : lattice.awake())
     for (int y = 0; y < tile::side; ++y)
       wet += static_cast<std::size_t>(std::ranges::count_if(
-          std::span(t.view.cells(first + tile::rest, y), tile::side), [](float f) { return f > 0; }));
+          std::span(t.view.cells(tile::rest, y), tile::side), [](float f) { return f > 0; }));
   return wet;
 }
 

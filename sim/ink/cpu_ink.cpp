@@ -15,8 +15,8 @@ namespace {
 #include "sim/ink/kernels/deposit.k"
 // clang-format on
 
-Population population(const PlaneView& view, std::size_t first, int x, int y) {
-  const auto f = [&](std::size_t i) { return view.cells(first + i, y)[x]; };
+Population population(const PlaneView& view, int x, int y) {
+  const auto f = [&](std::size_t i) { return view.cells(i, y)[x]; };
   return {f(tile::rest), f(tile::e),  f(tile::n),  f(tile::w), f(tile::s),
           f(tile::ne),   f(tile::nw), f(tile::sw), f(tile::se)};
 }
@@ -49,7 +49,6 @@ void CpuInk::apply(const InkEvent& event) {
 Exchange CpuInk::deposit(const Deposit& what) {
   Exchange exchange;
   exchange.patches.resize(what.patches.size());
-  const std::size_t flowing = static_cast<std::size_t>(lattice_->parity()) * tile::flowing_planes;
   AwakeTile* tile = nullptr;
   for (const TouchedCell& cell : touched_cells(what, setup_.cell_mm, columns_, rows_)) {
     const TilePlace place{cell.row / tile::side, cell.column / tile::side};
@@ -64,7 +63,7 @@ Exchange CpuInk::deposit(const Deposit& what) {
     vec4 surface_mass{*mass[0], *mass[1], *mass[2], *mass[3]};
     float taken;
     vec4 taken_mass;
-    touch(numbers_, total(population(tile->view, flowing, x, y)), load.wetness,
+    touch(numbers_, total(population(tile->view, x, y)), load.wetness,
           {load.strength[0], load.strength[1], load.strength[2], load.strength[3]}, cell.fresh,
           cell.contact_s, surface, surface_mass, taken, taken_mass);
     *mass[0] = surface_mass.x;
@@ -90,23 +89,22 @@ Exchange CpuInk::deposit(const Deposit& what) {
 
 void CpuInk::dry_sheet() {
   water_evaporated_ += sum_layers(view_of(*lattice_)).water_left;
-  const std::size_t flowing = static_cast<std::size_t>(lattice_->parity()) * tile::flowing_planes;
   for (AwakeTile& t : lattice_->awake()) {
     for (int y = 0; y < tile::side; ++y) {
       for (std::size_t c = 0; c < 4; ++c) {
-        float* flow = t.view.cells(flowing + tile::mass + c, y);
+        float* flow = t.view.cells(tile::mass + c, y);
         float* surface = t.view.cells(tile::still_begin + tile::surface_mass + c, y);
         float* fixed = t.view.cells(tile::still_begin + tile::fixed_mass + c, y);
         for (int x = 0; x < tile::side; ++x) fixed[x] += flow[x] + surface[x];
         std::fill_n(flow, tile::side, 0.0F);
         std::fill_n(surface, tile::side, 0.0F);
       }
-      for (std::size_t f = tile::rest; f <= tile::se; ++f)
-        std::fill_n(t.view.cells(flowing + f, y), tile::side, 0.0F);
+      for (std::size_t f = tile::rest; f <= tile::se; ++f) std::fill_n(t.view.cells(f, y), tile::side, 0.0F);
       std::fill_n(t.view.cells(tile::still_begin + tile::surface, y), tile::side, 0.0F);
     }
-    lay_fixed(t.view, lattice_->parity(), fixed_of(t.view));
+    lay_fixed(t.view, fixed_of(t.view));
     t.wet = 0;
+    t.changed = true;
   }
 }
 
@@ -150,7 +148,7 @@ bool CpuInk::still() const {
 InkRegion CpuInk::read(const CellRect& wanted) const {
   InkRegion region = blank_region(wanted, columns_, rows_);
   const auto per_area = static_cast<float>(setup_.paper.capacity);
-  for (const AwakeTile& t : lattice_->awake()) read_tile(t, lattice_->parity(), per_area, region);
+  for (const AwakeTile& t : lattice_->awake()) read_tile(t, per_area, region);
   for (const auto& [place, pigment] : lattice_->asleep())
     read_sleeping_tile(place, pigment, per_area, region);
   return region;

@@ -15,41 +15,42 @@ class DenseLattice final : public Lattice {
       : setup_(setup),
         width_(rounded_up(setup.columns, dense_width)),
         height_(rounded_up(setup.rows, tile::side)),
-        row_(width_ + 2 * margin),
-        plane_(static_cast<std::ptrdiff_t>(row_) * (height_ + 2) + margin),
-        arena_(tile::planes * static_cast<std::size_t>(plane_), 1),
+        row_(width_ + 2 * dense_margin),
+        plane_(static_cast<std::ptrdiff_t>(row_) * (height_ + 2) + dense_margin),
+        arena_((tile::planes + tile::flowing_planes) * static_cast<std::size_t>(plane_), 1),
         memory_(arena_.take()),
         outcomes_(static_cast<std::size_t>(width_ / dense_width) *
                   static_cast<std::size_t>(height_ / tile::side)) {
     for (int y = -1; y <= height_; ++y) {
-      std::fill_n(at(tile::paper_begin + tile::blocking, -margin, y), row_, tile::closed_blocking);
-      std::fill_n(at(tile::paper_begin + tile::grain, -margin, y), row_, tile::closed_grain);
+      std::fill_n(at(tile::paper_begin + tile::blocking, -dense_margin, y), row_, tile::closed_blocking);
+      std::fill_n(at(tile::paper_begin + tile::grain, -dense_margin, y), row_, tile::closed_grain);
     }
     for (int row = 0; row < tiles_across(setup.rows); ++row)
       for (int column = 0; column < tiles_across(setup.columns); ++column) {
-        const PlaneView view{at(0, column * tile::side, row * tile::side), row_, plane_};
+        const PlaneView view = seen(column * tile::side, row * tile::side, parity_);
         setup_.texture.fill(column * tile::side, row * tile::side, view);
-        awake_.push_back({{row, column}, view, 0});
+        awake_.push_back({{row, column}, view});
       }
   }
 
   std::vector<AwakeTile>& awake() override { return awake_; }
   const std::map<TilePlace, FixedPigment>& asleep() const override { return asleep_; }
-  int parity() const override { return parity_; }
 
   AwakeTile& wake(TilePlace place) override {
     return *std::ranges::lower_bound(awake_, place, {}, &AwakeTile::place);
   }
 
   double step(Stage stage) override {
-    const auto kernel = stage == Stage::full ? setup_.kernels->dense : setup_.kernels->dense_water;
+    const StageKernels& kernels = stage == Stage::full ? setup_.kernels->full : setup_.kernels->water;
     const int across = width_ / dense_width;
     setup_.threads->for_each(outcomes_.size(), [&](std::size_t i) {
       const int block = static_cast<int>(i);
-      const PlaneView view{at(0, block % across * dense_width, block / across * tile::side), row_, plane_};
-      kernel(setup_.numbers, view, parity_, outcomes_[i]);
+      const int x = block % across * dense_width;
+      const int y = block / across * tile::side;
+      kernels.dense(setup_.numbers, seen(x, y, parity_), seen(x, y, 1 - parity_), outcomes_[i]);
     });
     parity_ = 1 - parity_;
+    for (AwakeTile& t : awake_) t.view = seen(t.place.column * tile::side, t.place.row * tile::side, parity_);
     double evaporated = 0;
     for (const TileOutcome& outcome : outcomes_) evaporated += outcome.evaporated;
     // A block is wider than a tile: its tiles count as wet together.
@@ -61,22 +62,25 @@ class DenseLattice final : public Lattice {
   }
 
   void clear() override {
-    for (std::size_t plane = 0; plane < tile::paper_begin; ++plane)
-      for (int y = 0; y < height_; ++y) std::fill_n(at(plane, 0, y), width_, 0.0F);
+    for (std::size_t plane = 0; plane < tile::planes + tile::flowing_planes; ++plane)
+      for (int y = 0; y < height_ && !is_paper(plane); ++y) std::fill_n(at(plane, 0, y), width_, 0.0F);
     for (AwakeTile& t : awake_) t.wet = 0;
   }
 
-  void lay(TilePlace place, const FixedPigment& pigment) override {
-    lay_fixed(wake(place).view, parity_, pigment);
-  }
+  void lay(TilePlace place, const FixedPigment& pigment) override { lay_fixed(wake(place).view, pigment); }
 
  private:
-  static constexpr int margin = 16;
-
   float* at(std::size_t plane, int x, int y) {
     return memory_ + static_cast<std::ptrdiff_t>(plane) * plane_ +
-           static_cast<std::ptrdiff_t>(row_) * (y + 1) + margin + x;
+           static_cast<std::ptrdiff_t>(row_) * (y + 1) + dense_margin + x;
   }
+
+  // The second flowing planes come after all others.
+  PlaneView seen(int x, int y, int parity) {
+    return {at(parity == 0 ? 0 : std::size_t{tile::planes}, x, y), at(tile::still_begin, x, y), row_, plane_};
+  }
+
+  static bool is_paper(std::size_t plane) { return plane >= tile::paper_begin && plane < tile::planes; }
 
   LatticeSetup setup_;
   int width_;
@@ -88,7 +92,7 @@ class DenseLattice final : public Lattice {
   std::vector<TileOutcome> outcomes_;
   std::vector<AwakeTile> awake_;
   std::map<TilePlace, FixedPigment> asleep_;
-  int parity_ = 0;
+  int parity_ = 0;  // which flowing planes hold the state
 };
 
 }  // namespace

@@ -130,7 +130,7 @@ class GlInk final : public Ink {
     InkRegion region = blank_region(wanted, columns_, rows_);
     const auto per_area = static_cast<float>(setup_.paper.capacity);
     const TileCopies copies = state_->tiles.copies(region.rect);
-    for (const AwakeTile& t : copies.tiles) read_tile(t, 0, per_area, region);
+    for (const AwakeTile& t : copies.tiles) read_tile(t, per_area, region);
     for (const auto& [place, pigment] : state_->tiles.asleep())
       read_sleeping_tile(place, pigment, per_area, region);
     return region;
@@ -185,7 +185,7 @@ class GlInk final : public Ink {
 
   TileCopies whole_sheet() const { return state_->tiles.copies({0, 0, columns_, rows_}); }
 
-  SheetView view_of(const TileCopies& copies) const { return {copies.tiles, state_->tiles.asleep(), 0}; }
+  SheetView view_of(const TileCopies& copies) const { return {copies.tiles, state_->tiles.asleep()}; }
 
   Answer deposit(const Deposit& what) {
     Answer answer;

@@ -136,7 +136,7 @@ GlTiles::Awake& GlTiles::wake(TilePlace place) {
 void GlTiles::put_fixed(int slot, const FixedPigment& pigment) {
   std::vector<float> block(tile::planes * tile::cells);
   const PlaneView view{block.data(), tile::side, tile::cells};
-  lay_fixed(view, 0, pigment);
+  lay_fixed(view, pigment);
   still_.write(offset(slot, still_count, tile::fixed_mass),
                as_bytes(view.cells(tile::still_begin + tile::fixed_mass, 0), 4 * tile::cells));
   masses_[static_cast<std::size_t>(parity_)].write(offset(slot, mass_planes, tile::fixed_ink - tile::mass),

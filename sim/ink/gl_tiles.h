@@ -15,7 +15,7 @@
 
 namespace fude {
 
-// Awake tiles copied to the processor: views whose flowing planes are of parity 0, without paper.
+// Awake tiles copied to the processor: views without paper.
 struct TileCopies {
   std::vector<float> memory;
   std::vector<AwakeTile> tiles;  // in ascending order of place

@@ -13,8 +13,7 @@ FixedPigment fixed_of(const PlaneView& tile) {
   return pigment;
 }
 
-void lay_fixed(const PlaneView& tile, int parity, const FixedPigment& pigment) {
-  const std::size_t ink = static_cast<std::size_t>(parity) * tile::flowing_planes + tile::fixed_ink;
+void lay_fixed(const PlaneView& tile, const FixedPigment& pigment) {
   for (int y = 0; y < tile::side; ++y)
     for (int x = 0; x < tile::side; ++x) {
       std::array<float, 4> m;
@@ -22,7 +21,7 @@ void lay_fixed(const PlaneView& tile, int parity, const FixedPigment& pigment) {
         m[c] = pigment[c * tile::cells + static_cast<std::size_t>(y * tile::side + x)];
         tile.cells(tile::still_begin + tile::fixed_mass + c, y)[x] = m[c];
       }
-      tile.cells(ink, y)[x] = (m[0] + m[1]) + (m[2] + m[3]);  // in the order the step sums it
+      tile.cells(tile::fixed_ink, y)[x] = (m[0] + m[1]) + (m[2] + m[3]);  // in the order the step sums it
     }
 }
 

@@ -25,13 +25,14 @@ struct AwakeTile {
   TilePlace place;
   PlaneView view;
   std::uint16_t wet = 0;  // as TileOutcome::wet; bit 4 set by whoever pours water on it
+  bool changed = true;  // in its flowing or fixed planes since the last step, by other hands than the step's
 };
 
 // Pigment that a sleeping tile keeps: its four fixed planes, plane by plane.
 using FixedPigment = std::vector<float>;
 
 FixedPigment fixed_of(const PlaneView& tile);
-void lay_fixed(const PlaneView& tile, int parity, const FixedPigment& pigment);
+void lay_fixed(const PlaneView& tile, const FixedPigment& pigment);
 
 enum class Stage { full, water };  // all of the ink; stream, block and collide alone
 
@@ -39,7 +40,7 @@ class Lattice {
  public:
   virtual ~Lattice() = default;
 
-  // In ascending order of place.
+  // In ascending order of place. Views end at step().
   virtual std::vector<AwakeTile>& awake() = 0;
   virtual const std::map<TilePlace, FixedPigment>& asleep() const = 0;
 
@@ -48,9 +49,6 @@ class Lattice {
 
   // One step of every awake tile; returns the water that evaporated, in saturated cells.
   virtual double step(Stage stage) = 0;
-
-  // Which flowing planes hold the state now.
-  virtual int parity() const = 0;
 
   // Back to a dry white sheet.
   virtual void clear() = 0;

@@ -8,12 +8,7 @@ namespace fude {
 namespace {
 
 constexpr std::size_t mass_planes = 4;
-constexpr std::size_t saved_still = tile::flowing_planes;  // a saved tile keeps one parity of them
-constexpr std::size_t saved_planes = saved_still + tile::still_planes;
-
-std::size_t flowing(int parity, std::size_t plane) {
-  return static_cast<std::size_t>(parity) * tile::flowing_planes + plane;
-}
+constexpr std::size_t saved_planes = tile::paper_begin;  // the paper grows again
 
 double sum(const PlaneView& view, std::size_t plane) {
   double total = 0;
@@ -53,7 +48,7 @@ bool any(const std::vector<float>& values) {
   return std::ranges::any_of(values, [](float v) { return v != 0; });
 }
 
-InkSnapshot::Tile save(const AwakeTile& tile, int parity) {
+InkSnapshot::Tile save(const AwakeTile& tile) {
   InkSnapshot::Tile saved{tile.place.column, tile.place.row, true, {}};
   saved.planes.reserve(saved_planes * tile::cells);
   const auto append = [&](std::size_t plane) {
@@ -62,8 +57,7 @@ InkSnapshot::Tile save(const AwakeTile& tile, int parity) {
       saved.planes.insert(saved.planes.end(), row, row + tile::side);
     }
   };
-  for (std::size_t p = 0; p < tile::flowing_planes; ++p) append(flowing(parity, p));
-  for (std::size_t p = 0; p < tile::still_planes; ++p) append(tile::still_begin + p);
+  for (std::size_t p = 0; p < saved_planes; ++p) append(p);
   return saved;
 }
 
@@ -74,17 +68,18 @@ bool wet(const InkSnapshot::Tile& tile) {
                        tile.planes.begin() + static_cast<std::ptrdiff_t>(last * tile::cells),
                        [](float v) { return v != 0; });
   };
-  return nonzero(0, tile::fixed_ink) || nonzero(saved_still + tile::surface, saved_still + tile::fixed_mass);
+  return nonzero(0, tile::fixed_ink) ||
+         nonzero(tile::still_begin + tile::surface, tile::still_begin + tile::fixed_mass);
 }
 
-void load(const InkSnapshot::Tile& saved, int parity, AwakeTile& tile) {
+void load(const InkSnapshot::Tile& saved, AwakeTile& tile) {
   const float* from = saved.planes.data();
   const auto take = [&](std::size_t plane) {
     for (int y = 0; y < tile::side; ++y, from += tile::side)
       std::copy_n(from, tile::side, tile.view.cells(plane, y));
   };
-  for (std::size_t p = 0; p < tile::flowing_planes; ++p) take(flowing(parity, p));
-  for (std::size_t p = 0; p < tile::still_planes; ++p) take(tile::still_begin + p);
+  for (std::size_t p = 0; p < saved_planes; ++p) take(p);
+  tile.changed = true;
   // Until the next step has looked, take every edge for wet.
   tile.wet = (1U << tile::neighbourhood) - 1;
 }
@@ -94,11 +89,10 @@ void load(const InkSnapshot::Tile& saved, int parity, AwakeTile& tile) {
 InkTotals sum_layers(const SheetView& sheet) {
   InkTotals totals;
   for (const AwakeTile& t : sheet.awake) {
-    for (std::size_t f = tile::rest; f <= tile::se; ++f)
-      totals.water_left += sum(t.view, flowing(sheet.parity, f));
+    for (std::size_t f = tile::rest; f <= tile::se; ++f) totals.water_left += sum(t.view, f);
     totals.water_left += sum(t.view, tile::still_begin + tile::surface);
     for (std::size_t c = 0; c < mass_planes; ++c) {
-      totals.pigment_flow[c] += sum(t.view, flowing(sheet.parity, tile::mass + c));
+      totals.pigment_flow[c] += sum(t.view, tile::mass + c);
       totals.pigment_surface[c] += sum(t.view, tile::still_begin + tile::surface_mass + c);
       totals.pigment_fixed[c] += sum(t.view, tile::still_begin + tile::fixed_mass + c);
     }
@@ -141,17 +135,17 @@ CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows) {
   return rect;
 }
 
-void read_tile(const AwakeTile& t, int parity, float per_area, InkRegion& region) {
+void read_tile(const AwakeTile& t, float per_area, InkRegion& region) {
   const Cut c = cut(t.place, region.rect);
   for (int y = c.bottom; y < c.top; ++y)
     for (int x = c.left; x < c.right; ++x) {
       const std::size_t i = region_index(region, t.place, x, y);
       float water = 0;
-      for (std::size_t f = tile::rest; f <= tile::se; ++f) water += t.view.cells(flowing(parity, f), y)[x];
+      for (std::size_t f = tile::rest; f <= tile::se; ++f) water += t.view.cells(f, y)[x];
       region.flow_water[i] = water;
       region.surface_water[i] = t.view.cells(tile::still_begin + tile::surface, y)[x];
       for (std::size_t m = 0; m < mass_planes; ++m)
-        region.pigment[i][m] = per_area * (t.view.cells(flowing(parity, tile::mass + m), y)[x] +
+        region.pigment[i][m] = per_area * (t.view.cells(tile::mass + m, y)[x] +
                                            t.view.cells(tile::still_begin + tile::surface_mass + m, y)[x] +
                                            t.view.cells(tile::still_begin + tile::fixed_mass + m, y)[x]);
     }
@@ -170,7 +164,7 @@ void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_
 std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet) {
   std::vector<InkSnapshot::Tile> tiles;
   for (const AwakeTile& t : sheet.awake) {
-    InkSnapshot::Tile whole = save(t, sheet.parity);
+    InkSnapshot::Tile whole = save(t);
     if (wet(whole)) {
       tiles.push_back(std::move(whole));
       continue;
@@ -191,7 +185,7 @@ void load_tiles(const std::vector<InkSnapshot::Tile>& tiles, Lattice& lattice) {
   for (const InkSnapshot::Tile& saved : tiles) {
     const TilePlace place{saved.row, saved.column};
     if (saved.wet)
-      load(saved, lattice.parity(), lattice.wake(place));
+      load(saved, lattice.wake(place));
     else
       lattice.lay(place, saved.planes);
   }

@@ -13,10 +13,9 @@ namespace fude {
 struct SheetView {
   std::span<const AwakeTile> awake;
   const std::map<TilePlace, FixedPigment>& asleep;
-  int parity;  // which flowing planes hold the state
 };
 
-inline SheetView view_of(Lattice& lattice) { return {lattice.awake(), lattice.asleep(), lattice.parity()}; }
+inline SheetView view_of(Lattice& lattice) { return {lattice.awake(), lattice.asleep()}; }
 
 // Sums over every tile in order of place, in saturated cells; only the water left and the pigment layers.
 InkTotals sum_layers(const SheetView& sheet);
@@ -31,7 +30,7 @@ InkRegion blank_region(const CellRect& wanted, int columns, int rows);
 CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows);
 
 // Adds what one tile holds of the rectangle to a region; `per_area` turns masses into µl/mm².
-void read_tile(const AwakeTile& tile, int parity, float per_area, InkRegion& region);
+void read_tile(const AwakeTile& tile, float per_area, InkRegion& region);
 void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_area, InkRegion& region);
 
 std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet);

@@ -1,9 +1,12 @@
-// Compiled once for each instruction set, with FUDE_STEP_KERNELS naming its table. A row of cells is one
-// vector loop. Nothing here may be shared with another translation unit: the linker could keep the copy
-// that the processor cannot run. So all but the table stands in an unnamed namespace.
+// Compiled once for each instruction set, with FUDE_STEP_KERNELS naming its table. Nothing here may be shared
+// with another translation unit: the linker could keep the copy that the processor cannot run. So all but the
+// table stands in an unnamed namespace.
 #include "sim/ink/tile_step.h"
 
-#include "sim/ink/kernels/lang_cpp.h"
+#include <algorithm>
+#include <type_traits>
+
+#include "sim/ink/kernels/lang_lanes.h"
 
 namespace fude {
 namespace {
@@ -16,433 +19,300 @@ namespace {
 #include "sim/ink/kernels/dry.k"
 // clang-format on
 
-// What the cells of a row show their neighbours, derived once. Two rows are kept while a block is swept from
-// below, and the links of two rows; they stay in the first-level cache.
-enum Shown : int {
-  shown_e,
-  shown_n,
-  shown_w,
-  shown_s,
-  shown_ne,
-  shown_nw,
-  shown_sw,
-  shown_se,
-  shown_blocking,
-  shown_water,
-  shown_per_water,
-  shown_concentration,
-  shown_head = shown_concentration + 4,
-  shown_diagonal_head,
-  shown_toes,
-  shown_barrier,
-  shown_toe,
-  shown_fields
-};
+}  // namespace
+}  // namespace fude
 
-// The links of a row of cells to the east and upwards, six floats each.
-enum Linked : int { linked_water, linked_mass, linked_edge = linked_mass + 4 };
-constexpr int linked_fields = 6;
-enum Side : int { side_e, side_n, side_ne, side_nw };
-constexpr int sides = 4;
+// clang-format off
+#include "sim/ink/shown_rows.h"
+#include "sim/ink/row_step.h"
+// clang-format on
 
-constexpr int link_at(Side side, int pitch) { return static_cast<int>(side) * linked_fields * pitch; }
+namespace fude {
+namespace {
 
-template <int block_width>
-struct Rows {
-  static constexpr int width = block_width;
-  static constexpr int margin = 16;  // column 0 on a cache line, and one cell beyond either end
-  static constexpr int pitch = width + 2 * margin;
-  alignas(64) float shown[3][shown_fields * pitch];
-  alignas(64) float linked[2][sides * linked_fields * pitch];
+using TileRows = Rows<tile::side, 0>;
+using Column = Line<tile::shown_fields, tile::side, 0>;
+using ColumnLinks = Line<sides * linked_fields, tile::side, 0>;
+constexpr int pitch = TileRows::pitch;
+static_assert(Column::pitch == pitch && ColumnLinks::pitch == pitch);
 
-  float* shown_row(int y) { return shown[(y + 3) % 3] + margin; }
-  float* linked_row(int y) { return linked[(y + 2) % 2] + margin; }
-};
-
-// The rows below, at and above a cell, and the links of those below and at it.
-template <int row_pitch>
-struct Surroundings {
-  static constexpr int pitch = row_pitch;
-  const float* shown[3];
-  const float* linked[2];
-};
-
-template <class Around>
-FUNCTION float shown(const Around& rows, int field, int x, int dx, int dy) {
-  return rows.shown[1 + dy][field * Around::pitch + x + dx];
+RowMemory tile_row(float* block, int y) {
+  float* row = block + y * tile::row_stride;
+  return {row, row, row + tile::still_begin * tile::plane_stride,
+          row + tile::paper_begin * tile::plane_stride};
 }
 
-template <class Around>
-FUNCTION Site shown_site(const Around& rows, int x, int dx, int dy) {
-  Site site;
-  site.water = shown(rows, shown_water, x, dx, dy);
-  site.per_water = shown(rows, shown_per_water, x, dx, dy);
-  site.concentration = {
-      shown(rows, shown_concentration, x, dx, dy), shown(rows, shown_concentration + 1, x, dx, dy),
-      shown(rows, shown_concentration + 2, x, dx, dy), shown(rows, shown_concentration + 3, x, dx, dy)};
-  site.blocking = shown(rows, shown_blocking, x, dx, dy);
-  site.head = shown(rows, shown_head, x, dx, dy);
-  site.diagonal_head = shown(rows, shown_diagonal_head, x, dx, dy);
-  site.toes = shown(rows, shown_toes, x, dx, dy);
-  site.barrier = shown(rows, shown_barrier, x, dx, dy);
-  site.toe = shown(rows, shown_toe, x, dx, dy);
-  return site;
-}
-
-template <class Around>
-FUNCTION Crossing linked(const Around& rows, Side side, int x, int dx, int dy) {
-  const float* c = rows.linked[1 + dy] + link_at(side, Around::pitch) + x + dx;
-  constexpr int pitch = Around::pitch;
-  return {c[linked_water * pitch],
-          {c[linked_mass * pitch], c[(linked_mass + 1) * pitch], c[(linked_mass + 2) * pitch],
-           c[(linked_mass + 3) * pitch]},
-          c[linked_edge * pitch]};
-}
-
-template <int pitch>
-FUNCTION void put_link(float* row, Side side, int x, const Crossing& crossing) {
-  float* c = row + link_at(side, pitch) + x;
-  c[linked_water * pitch] = crossing.water;
-  c[linked_mass * pitch] = crossing.mass.x;
-  c[(linked_mass + 1) * pitch] = crossing.mass.y;
-  c[(linked_mass + 2) * pitch] = crossing.mass.z;
-  c[(linked_mass + 3) * pitch] = crossing.mass.w;
-  c[linked_edge * pitch] = crossing.edge;
-}
-
-#define CELL_PARAMETERS , const auto &rows, int x
-#define CELL_ARGUMENTS , rows, x
-#define CROSSING(side, dx, dy) linked(rows, side_##side, x, dx, dy)
-#define ARRIVING(member, dx, dy) shown(rows, shown_##member, x, dx, dy)
-#define BLOCKING(dx, dy) shown(rows, shown_blocking, x, dx, dy)
-#include "sim/ink/kernels/step.k"
-#include "sim/ink/kernels/water.k"
-
-template <class Around>
-FUNCTION Crossing link_e(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
-  const Site there = shown_site(rows, x, 1, 0);
-  return crossing(k, here, there, here.head, there.head, k.pace_straight, ARRIVING(e, 0, 0),
-                  ARRIVING(w, 1, 0));
-}
-
-template <class Around>
-FUNCTION Crossing link_n(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
-  const Site there = shown_site(rows, x, 0, 1);
-  return crossing(k, here, there, here.head, there.head, k.pace_straight, ARRIVING(n, 0, 0),
-                  ARRIVING(s, 0, 1));
-}
-
-template <class Around>
-FUNCTION Crossing link_ne(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
-  const Site there = shown_site(rows, x, 1, 1);
-  return crossing(k, here, there, here.diagonal_head, there.diagonal_head, k.pace_diagonal,
-                  ARRIVING(ne, 0, 0), ARRIVING(sw, 1, 1));
-}
-
-template <class Around>
-FUNCTION Crossing link_nw(const LatticeNumbers& k, const Around& rows, const Site& here, int x) {
-  const Site there = shown_site(rows, x, -1, 1);
-  return crossing(k, here, there, here.diagonal_head, there.diagonal_head, k.pace_diagonal,
-                  ARRIVING(nw, 0, 0), ARRIVING(se, -1, 1));
-}
-
-// The links of the row `rows` stands at, to the east and to the row above.
-template <class Rows>
-void link_row(const LatticeNumbers& numbers, const Surroundings<Rows::pitch>& rows, float* to) {
-  const LatticeNumbers k = numbers;
-  constexpr int pitch = Rows::pitch;
-  constexpr int width = Rows::width;
-  put_link<pitch>(to, side_e, -1, link_e(k, rows, shown_site(rows, -1, 0, 0), -1));
-  put_link<pitch>(to, side_ne, -1, link_ne(k, rows, shown_site(rows, -1, 0, 0), -1));
-  put_link<pitch>(to, side_nw, width, link_nw(k, rows, shown_site(rows, width, 0, 0), width));
-#pragma GCC ivdep
-  for (int x = 0; x < width; ++x) {
-    const Site here = shown_site(rows, x, 0, 0);
-    put_link<pitch>(to, side_e, x, link_e(k, rows, here, x));
-    put_link<pitch>(to, side_n, x, link_n(k, rows, here, x));
-    put_link<pitch>(to, side_ne, x, link_ne(k, rows, here, x));
-    put_link<pitch>(to, side_nw, x, link_nw(k, rows, here, x));
-  }
-}
-
-// Where a row of cells lies in the planes: its cells, and those just left and right of it.
-struct Source {
-  const float* left;
-  const float* row;
-  const float* right;
-};
-
-// Planes one after the other in a tile's block, or each over the whole sheet.
-struct TilePlanes {
-  static constexpr std::ptrdiff_t plane = tile::plane_stride;
-};
-struct DensePlanes {
-  std::ptrdiff_t plane;
-};
-
-template <class Planes>
-FUNCTION Population population(const Planes& planes, const float* cell, int x) {
-  const float* f = cell + x;
-  return {f[tile::rest * planes.plane], f[tile::e * planes.plane],  f[tile::n * planes.plane],
-          f[tile::w * planes.plane],    f[tile::s * planes.plane],  f[tile::ne * planes.plane],
-          f[tile::nw * planes.plane],   f[tile::sw * planes.plane], f[tile::se * planes.plane]};
-}
-
-template <int pitch>
-FUNCTION void show_population(const Population& f, float* to) {
-  to[shown_e * pitch] = f.e;
-  to[shown_n * pitch] = f.n;
-  to[shown_w * pitch] = f.w;
-  to[shown_s * pitch] = f.s;
-  to[shown_ne * pitch] = f.ne;
-  to[shown_nw * pitch] = f.nw;
-  to[shown_sw * pitch] = f.sw;
-  to[shown_se * pitch] = f.se;
-}
-
-template <class Planes>
-FUNCTION vec4 quad(const Planes& planes, const float* cell, std::size_t first, int x) {
-  const float* c = cell + static_cast<std::ptrdiff_t>(first) * planes.plane + x;
-  return {c[0], c[planes.plane], c[2 * planes.plane], c[3 * planes.plane]};
-}
-
-template <class Planes>
-FUNCTION void put_quad(const Planes& planes, float* cell, std::size_t first, int x, const vec4& v) {
-  float* c = cell + static_cast<std::ptrdiff_t>(first) * planes.plane + x;
-  c[0] = v.x;
-  c[planes.plane] = v.y;
-  c[2 * planes.plane] = v.z;
-  c[3 * planes.plane] = v.w;
-}
-
-template <bool ink, int pitch, class Planes>
-FUNCTION void show_cell(const LatticeNumbers& k, const Planes& planes, const float* flowing,
-                        const float* paper, int x, float* to) {
-  const Population f = population(planes, flowing, x);
-  show_population<pitch>(f, to);
-  const float blocking = paper[tile::blocking * planes.plane + x];
-  if constexpr (!ink) {
-    to[shown_blocking * pitch] = blocking;
-  } else {
-    const Site site = site_of(k, total(f), quad(planes, flowing, tile::mass, x),
-                              flowing[tile::fixed_ink * planes.plane + x], blocking,
-                              paper[tile::grain * planes.plane + x], paper[tile::toe * planes.plane + x]);
-    to[shown_blocking * pitch] = site.blocking;
-    to[shown_water * pitch] = site.water;
-    to[shown_per_water * pitch] = site.per_water;
-    to[shown_concentration * pitch] = site.concentration.x;
-    to[(shown_concentration + 1) * pitch] = site.concentration.y;
-    to[(shown_concentration + 2) * pitch] = site.concentration.z;
-    to[(shown_concentration + 3) * pitch] = site.concentration.w;
-    to[shown_head * pitch] = site.head;
-    to[shown_diagonal_head * pitch] = site.diagonal_head;
-    to[shown_toes * pitch] = site.toes;
-    to[shown_barrier * pitch] = site.barrier;
-    to[shown_toe * pitch] = site.toe;
-  }
-}
-
-template <bool ink, class Rows, class Planes>
-void show_row(const LatticeNumbers& numbers, const Planes& planes, const Source& flowing, const Source& paper,
-              float* to) {
-  const LatticeNumbers k = numbers;
-  show_cell<ink, Rows::pitch>(k, planes, flowing.left, paper.left, 0, to - 1);
-  show_cell<ink, Rows::pitch>(k, planes, flowing.right, paper.right, 0, to + Rows::width);
-#pragma GCC ivdep
-  for (int x = 0; x < Rows::width; ++x)
-    show_cell<ink, Rows::pitch>(k, planes, flowing.row, paper.row, x, to + x);
-}
-
-template <class Planes>
-FUNCTION void put_population(const Planes& planes, float* cell, int x, const Population& f) {
-  float* to = cell + x;
-  to[tile::rest * planes.plane] = f.rest;
-  to[tile::e * planes.plane] = f.e;
-  to[tile::n * planes.plane] = f.n;
-  to[tile::w * planes.plane] = f.w;
-  to[tile::s * planes.plane] = f.s;
-  to[tile::ne * planes.plane] = f.ne;
-  to[tile::nw * planes.plane] = f.nw;
-  to[tile::sw * planes.plane] = f.sw;
-  to[tile::se * planes.plane] = f.se;
-}
-
-// One row of cells in memory: what is read, written, and both.
-struct RowMemory {
-  const float* flowing;
-  float* next;
-  float* still;
-};
-
-template <bool over_relaxed, class Rows, class Planes>
-void step_ink_row(const LatticeNumbers& numbers, const Planes& planes, const Surroundings<Rows::pitch>& rows,
-                  const RowMemory& memory, float* evaporated, float* wet) {
-  const LatticeNumbers k = numbers;
-#pragma GCC ivdep
-  for (int x = 0; x < Rows::width; ++x) {
-    const Population before = population(planes, memory.flowing, x);
-    vec4 mass = quad(planes, memory.flowing, tile::mass, x);
-    float surface = memory.still[tile::surface * planes.plane + x];
-    vec4 surface_mass = quad(planes, memory.still, tile::surface_mass, x);
-    vec4 fixed_mass = quad(planes, memory.still, tile::fixed_mass, x);
-    Population after;
-    float water;
-    float gone;
-    step_cell(k, over_relaxed, shown_site(rows, x, 0, 0), before CELL_ARGUMENTS, mass, surface, surface_mass,
-              fixed_mass, after, water, gone);
-    put_population(planes, memory.next, x, after);
-    put_quad(planes, memory.next, tile::mass, x, mass);
-    memory.next[tile::fixed_ink * planes.plane + x] =
-        (fixed_mass.x + fixed_mass.y) + (fixed_mass.z + fixed_mass.w);
-    memory.still[tile::surface * planes.plane + x] = surface;
-    put_quad(planes, memory.still, tile::surface_mass, x, surface_mass);
-    put_quad(planes, memory.still, tile::fixed_mass, x, fixed_mass);
-    evaporated[x] = gone;
-    wet[x] = water + surface;
-  }
-}
-
-template <bool over_relaxed, class Rows, class Planes>
-void step_water_row(const LatticeNumbers& numbers, const Planes& planes,
-                    const Surroundings<Rows::pitch>& rows, const RowMemory& memory) {
-  const LatticeNumbers k = numbers;
-#pragma GCC ivdep
-  for (int x = 0; x < Rows::width; ++x)
-    put_population(planes, memory.next, x,
-                   step_water(k, over_relaxed, population(planes, memory.flowing, x) CELL_ARGUMENTS));
-}
-
-template <int width>
-bool any(const float* wet) {
-  float most = 0;
-  for (int x = 0; x < width; ++x) most = greatest(most, wet[x]);
-  return most > 0;
-}
-
-// Sums of a block in an order that no vector width changes: each column upwards, then from left to right.
-template <int width>
-struct Tally {
-  alignas(64) double evaporated[width] = {};
-  alignas(64) float wet[width] = {};
-  bool wet_below = false;
-  bool wet_above = false;
-  std::uint16_t corners = 0;
-
-  void add(int y, const float* gone, const float* water) {
-    for (int x = 0; x < width; ++x) evaporated[x] += static_cast<double>(gone[x]);
-    for (int x = 0; x < width; ++x) wet[x] = greatest(wet[x], water[x]);
-    if (y == 0) {
-      wet_below = any<width>(water);
-      corners |= static_cast<std::uint16_t>((water[0] > 0) << 0 | (water[width - 1] > 0) << 2);
-    }
-    if (y == tile::side - 1) {
-      wet_above = any<width>(water);
-      corners |= static_cast<std::uint16_t>((water[0] > 0) << 6 | (water[width - 1] > 0) << 8);
-    }
-  }
-
-  void finish(TileOutcome& outcome) const {
-    outcome.evaporated = 0;
-    for (int x = 0; x < width; ++x) outcome.evaporated += evaporated[x];
-    outcome.wet =
-        static_cast<std::uint16_t>(corners | wet_below << 1 | (wet[0] > 0) << 3 | any<width>(wet) << 4 |
-                                   (wet[width - 1] > 0) << 5 | wet_above << 7);
-  }
-};
-
-constexpr int rows_ahead = 4;
-
-// Asks for row y of the tile to the right, whose edge is needed here and which is most likely stepped next: a
-// step jumps between too many places for the processor to foresee (docs/kernels.md has what that is worth).
+// Of the fields that are no populations.
 template <bool ink>
-FUNCTION void fetch_ahead(const PlaneView& right, std::size_t now, std::size_t next, int y) {
-  constexpr std::size_t line = 64 / sizeof(float);
-  constexpr std::size_t flowing =
-      (ink ? std::size_t{tile::flowing_planes} : std::size_t{tile::mass}) * tile::side;
-  constexpr std::size_t still = (tile::planes - tile::still_begin) * tile::side;
-  const float* from = right.cells(now, y);
-  const float* to = right.cells(next, y);
-  const float* other = right.cells(tile::still_begin, y);
-#pragma GCC unroll 64
-  for (std::size_t i = 0; i < flowing; i += line) __builtin_prefetch(from + i, 0, 2);
-#pragma GCC unroll 64
-  for (std::size_t i = 0; i < flowing; i += line) __builtin_prefetch(to + i, 1, 2);
-#pragma GCC unroll 64
-  for (std::size_t i = 0; ink && i < still; i += line) __builtin_prefetch(other + i, 1, 2);
+constexpr int last_field = ink ? int{tile::shown_fields} : int{tile::shown_blocking} + 1;
+
+// What goes over an edge: its populations, and all that is no population.
+template <bool ink, class Put>
+FUNCTION void for_each_field(tile::Edge edge, const Put& put) {
+  for (int i = 0; i < tile::edge_populations; ++i) put(tile::leaving[edge][i], i);
+  for (int f = tile::shown_blocking; f < last_field<ink>; ++f)
+    put(f, tile::edge_populations + f - tile::shown_blocking);
 }
 
-// Sweeps a block of rows from below. source(plane, y) finds row y of a plane, -1 to tile::side.
-template <bool ink, class Rows, class Planes, class SourceOf, class Ahead>
-FUNCTION void sweep(const LatticeNumbers& k, const Planes& planes, const SourceOf& source, const Ahead& ahead,
-                    int parity, const PlaneView& block, TileOutcome& outcome) {
-  const std::size_t now = static_cast<std::size_t>(parity) * tile::flowing_planes;
-  const std::size_t next = tile::flowing_planes - now;
-  Rows rows;
-  Tally<Rows::width> tally;
-  alignas(64) float evaporated[Rows::width];
-  alignas(64) float wet[Rows::width];
+// A tile and its neighbours as one step sees them.
+struct Around {
+  const Neighbourhood& blocks;
+  int parity;
+
+  float* block(int dx, int dy) const { return blocks[static_cast<std::size_t>(tile::own + 3 * dy + dx)]; }
+  float* edge(int dx, int dy, tile::Edge which) const { return arena_edge(block(dx, dy), parity, which); }
+};
+
+// The cells of an edge as a line.
+template <bool ink>
+void show_edge_line(const float* from, tile::Edge edge, float* line) {
+  for_each_field<ink>(
+      edge, [&](int f, int i) { std::copy_n(from + i * tile::side, tile::side, line + f * pitch); });
+}
+
+// The cell of a line at x from the corner of the neighbour across it.
+template <bool ink>
+void show_corner(const Around& around, int dx, int dy, float* line, int x) {
+  const auto corner = static_cast<tile::Corner>((dy < 0 ? 2 : 0) + (dx < 0 ? 1 : 0));  // theirs, opposite
+  const float* from = arena_corner(around.block(dx, dy), around.parity, corner);
+  line[tile::leaving_corner[corner] * pitch + x] = from[0];
+  for (int f = tile::shown_blocking; f < last_field<ink>; ++f)
+    line[f * pitch + x] = from[1 + f - tile::shown_blocking];
+}
+
+// What lies beyond the ends of the tile's rows: the neighbours' columns, and the links to them.
+struct Beyond {
+  Column west;
+  Column east;
+  ColumnLinks west_links;
+  ColumnLinks east_links;
+
+  // above: the row over the tile.
+  template <bool ink>
+  void prepare(const LatticeNumbers& k, const Around& around, const float* above) {
+    show_edge_line<ink>(around.edge(-1, 0, tile::east), tile::east, west.begin());
+    show_edge_line<ink>(around.edge(1, 0, tile::west), tile::west, east.begin());
+    for (int dy : {-1, 1}) {
+      const int y = dy < 0 ? -1 : tile::side;
+      show_corner<ink>(around, -1, dy, west.begin(), y);
+      show_corner<ink>(around, 1, dy, east.begin(), y);
+    }
+    if constexpr (ink) {
+      Column own{};
+      show_edge_line<ink>(around.edge(0, 0, tile::west), tile::west, own.begin());
+      end_column(own, above, 0);
+      link_columns<Column>(k, west.begin(), own.begin(), west_links.begin());
+      show_edge_line<ink>(around.edge(0, 0, tile::east), tile::east, own.begin());
+      end_column(own, above, tile::side - 1);
+      link_columns<Column>(k, own.begin(), east.begin(), east_links.begin());
+    }
+  }
+
+  static void end_column(Column& own, const float* above, int x) {
+    for (int f = 0; f < tile::shown_fields; ++f) own.begin()[f * pitch + tile::side] = above[f * pitch + x];
+  }
+
+  // Cells -1 and tile::side of row y.
+  template <bool ink>
+  void show(int y, float* line) {
+    for_each_field<ink>(tile::east, [&](int f, int) { line[f * pitch - 1] = west.begin()[f * pitch + y]; });
+    for_each_field<ink>(tile::west,
+                        [&](int f, int) { line[f * pitch + tile::side] = east.begin()[f * pitch + y]; });
+  }
+
+  void link(int y, float* line) {
+    const auto put = [&](Side side, int x, ColumnLinks& links) {
+      const int from = link_at(side, pitch);
+      for (int f = 0; f < linked_fields; ++f)
+        line[from + f * pitch + x] = links.begin()[from + f * pitch + y];
+    };
+    put(side_e, -1, west_links);
+    put(side_ne, -1, west_links);
+    put(side_nw, tile::side, east_links);
+  }
+};
+
+// The outermost columns of a tile, planes one after the other from south to north.
+struct OuterColumns {
+  alignas(64) float west[tile::planes * tile::side];
+  alignas(64) float east[tile::planes * tile::side];
+
+  template <bool ink>
+  void take(const float* row, int y) {
+    const auto take_planes = [&](std::size_t first, std::size_t count) {
+      for (std::size_t p = first; p < first + count; ++p) {
+        const std::size_t to = p * tile::side + static_cast<std::size_t>(y);
+        west[to] = row[p * tile::side];
+        east[to] = row[p * tile::side + tile::side - 1];
+      }
+    };
+    take_planes(tile::rest, ink ? std::size_t{tile::flowing_planes} : std::size_t{tile::mass});
+    take_planes(tile::paper_begin, ink ? std::size_t{tile::paper_planes} : 1);
+  }
+};
+
+template <bool ink, tile::Edge edge>
+void make_edge(const LatticeNumbers& k, const float* cells, float* block, int parity) {
+  show_row<ink, EdgeFields<edge>, 0, tile::side>(k, TilePlanes{}, cells,
+                                                 cells + tile::paper_begin * tile::plane_stride,
+                                                 arena_edge(block, parity, edge));
+}
+
+void make_corner(float* block, int parity, tile::Corner corner) {
+  const bool up = corner == tile::north_west || corner == tile::north_east;
+  const bool right = corner == tile::south_east || corner == tile::north_east;
+  const tile::Edge edge = up ? tile::north : tile::south;
+  const int* leaving = tile::leaving[edge];
+  const auto i = std::find(leaving, leaving + tile::edge_populations, tile::leaving_corner[corner]) - leaving;
+  const float* from = arena_edge(block, parity, edge) + (right ? tile::side - 1 : 0);
+  float* to = arena_corner(block, parity, corner);
+  to[0] = from[i * tile::side];
+  for (int f = tile::edge_populations; f < tile::edge_fields; ++f)
+    to[1 + f - tile::edge_populations] = from[f * tile::side];
+}
+
+template <bool ink>
+void make_edges(const LatticeNumbers& k, float* block, const OuterColumns& columns, int parity) {
+  make_edge<ink, tile::south>(k, block, block, parity);
+  make_edge<ink, tile::north>(k, block + (tile::side - 1) * tile::row_stride, block, parity);
+  make_edge<ink, tile::west>(k, columns.west, block, parity);
+  make_edge<ink, tile::east>(k, columns.east, block, parity);
+  for (int corner = 0; corner < tile::corners; ++corner)
+    make_corner(block, parity, static_cast<tile::Corner>(corner));
+}
+
+template <bool ink>
+void make_edges_anew(const LatticeNumbers& k, float* block, int parity) {
+  OuterColumns columns;
+  for (int y = 0; y < tile::side; ++y) columns.take<ink>(block + y * tile::row_stride, y);
+  make_edges<ink>(k, block, columns, parity);
+}
+
+// Asks for what a later row needs: the processor does not foresee jumps between this many planes and loops
+// (docs/kernels.md has what it is worth).
+constexpr int rows_ahead = 8;
+constexpr int cache_line = 64 / sizeof(float);
+
+// One of `parts` equal parts of some floats: the processor waits when it is asked for too much at once.
+template <int part = 0, int parts = 1>
+FUNCTION void fetch(const float* first, int floats) {
+  const int count = floats / cache_line;
+#pragma GCC unroll 64
+  for (int i = count * part / parts; i < count * (part + 1) / parts; ++i)
+    __builtin_prefetch(first + i * cache_line, 1, 2);
+}
+
+struct Ahead {
+  const Around& here;
+  const Around& next;
+
+  template <bool ink, int part>
+  [[gnu::always_inline]] void row(int y) const {
+    const int later = y + rows_ahead;
+    const float* row = (later < tile::side ? here : next).block(0, 0) + later % tile::side * tile::row_stride;
+    if constexpr (ink) {
+      fetch<part, 3>(row, tile::row_stride);
+    } else {
+      fetch<part, 3>(row, tile::mass * tile::plane_stride);
+      if constexpr (part == 0) fetch(row + tile::paper_begin * tile::plane_stride, tile::plane_stride);
+    }
+  }
+
+  // What the next tile reads and writes of its own edges, and reads of its neighbours' but the one to the
+  // west, which this tile leaves in the cache.
+  [[gnu::always_inline]] void edges(int y) const {
+    constexpr int own = (2 * tile::edges_stride / cache_line + tile::side - 1) / tile::side * cache_line;
+    fetch(next.block(0, 0) + tile::edges_begin + y * own, own);
+    if (y * cache_line >= tile::edge_floats) return;
+    fetch(next.edge(1, 0, tile::west) + y * cache_line, cache_line);
+    fetch(next.edge(0, 1, tile::south) + y * cache_line, cache_line);
+    fetch(next.edge(0, -1, tile::north) + y * cache_line, cache_line);
+  }
+};
+
+template <bool ink>
+void step_tile(const LatticeNumbers& k, const Neighbourhood& blocks, const Neighbourhood& next, int parity,
+               TileOutcome& outcome) {
+  const Around around{blocks, parity};
+  const Around then{next, parity};
+  const Ahead ahead{around, then};
+  float* block = blocks[tile::own];
+  TileRows rows;
+  Beyond beyond{};
+  OuterColumns columns;
+  Tally<tile::side> tally;
+  const auto link = [&](int y) {
+    if constexpr (ink) {
+      link_row<TileRows>(k, rows.shown(y), rows.shown(y + 1), rows.linked(y));
+      beyond.link(y, rows.linked(y));
+    }
+  };
+  show_edge_line<ink>(around.edge(0, 1, tile::south), tile::south, rows.shown(tile::side));
+  beyond.prepare<ink>(k, around, rows.shown(tile::side));
   const auto show = [&](int y) {
-    show_row<ink, Rows>(k, planes, source(now, y), source(tile::paper_begin, y), rows.shown_row(y));
+    if (y < 0)
+      show_edge_line<ink>(around.edge(0, -1, tile::north), tile::north, rows.shown(y));
+    else if (y == tile::side)
+      show_edge_line<ink>(around.edge(0, 1, tile::south), tile::south, rows.shown(y));
+    else
+      show_row<ink, RowFields<pitch>, 0, tile::side>(k, TilePlanes{}, tile_row(block, y).flowing,
+                                                     tile_row(block, y).paper, rows.shown(y));
+    beyond.show<ink>(y, rows.shown(y));
   };
-  const auto around = [&](int y) -> Surroundings<Rows::pitch> {
-    return {{rows.shown_row(y - 1), rows.shown_row(y), rows.shown_row(y + 1)},
-            {rows.linked_row(y - 1), rows.linked_row(y)}};
-  };
-  for (int y = 0; y < rows_ahead; ++y) ahead(y);
   show(-1);
   show(0);
-  if constexpr (ink) link_row<Rows>(k, around(-1), rows.linked_row(-1));
+  link(-1);
   for (int y = 0; y < tile::side; ++y) {
-    if (y + rows_ahead < tile::side) ahead(y + rows_ahead);
+    ahead.row<ink, 0>(y);
     show(y + 1);
-    const RowMemory memory{block.cells(now, y), block.cells(next, y), block.cells(tile::still_begin, y)};
-    if constexpr (ink) {
-      link_row<Rows>(k, around(y), rows.linked_row(y));
-      if (k.relaxation > 1)
-        step_ink_row<true, Rows>(k, planes, around(y), memory, evaporated, wet);
-      else
-        step_ink_row<false, Rows>(k, planes, around(y), memory, evaporated, wet);
-      tally.add(y, evaporated, wet);
-    } else if (k.relaxation > 1) {
-      step_water_row<true, Rows>(k, planes, around(y), memory);
-    } else {
-      step_water_row<false, Rows>(k, planes, around(y), memory);
-    }
+    ahead.row<ink, 1>(y);
+    link(y);
+    ahead.row<ink, 2>(y);
+    const Surroundings<pitch> here{{rows.shown(y - 1), rows.shown(y), rows.shown(y + 1)},
+                                   {rows.linked(y - 1), rows.linked(y)}};
+    const RowMemory memory = tile_row(block, y);
+    step_row<ink>(k, TilePlanes{}, here, memory, y, tally);
+    columns.take<ink>(memory.flowing, y);
+    ahead.edges(y);
   }
+  make_edges<ink>(k, block, columns, 1 - parity);
   if constexpr (ink) tally.finish(outcome);
 }
 
 template <bool ink>
-void step_tile(const LatticeNumbers& k, const std::array<float*, tile::neighbourhood>& blocks, int parity,
-               TileOutcome& outcome) {
-  const auto source = [&](std::size_t plane, int y) -> Source {
-    const std::size_t band = y < 0 ? 0 : y >= tile::side ? 6 : 3;
-    const auto row = [&](std::size_t i) {
-      return arena_view(blocks[band + i]).cells(plane, (y + tile::side) % tile::side);
-    };
-    return {row(0) + tile::side - 1, row(1), row(2)};
+void step_dense(const LatticeNumbers& k, const PlaneView& now, const PlaneView& next, TileOutcome& outcome) {
+  constexpr int reach = dense_margin;
+  using DenseRows = Rows<dense_width, reach>;
+  const DensePlanes planes{now.plane};
+  DenseRows rows;
+  Tally<dense_width> tally;
+  const auto show = [&](int y) {
+    show_row<ink, RowFields<DenseRows::pitch>, reach, dense_width>(
+        k, planes, now.cells(0, y), now.cells(tile::paper_begin, y), rows.shown(y));
   };
-  const std::size_t now = static_cast<std::size_t>(parity) * tile::flowing_planes;
-  const auto ahead = [&](int y) {
-    fetch_ahead<ink>(arena_view(blocks[tile::own + 1]), now, tile::flowing_planes - now, y);
+  const auto link = [&](int y) {
+    if constexpr (ink) link_row<DenseRows>(k, rows.shown(y), rows.shown(y + 1), rows.linked(y));
   };
-  sweep<ink, Rows<tile::side>>(k, TilePlanes{}, source, ahead, parity, arena_view(blocks[tile::own]),
-                               outcome);
-}
-
-template <bool ink>
-void step_dense(const LatticeNumbers& k, const PlaneView& block, int parity, TileOutcome& outcome) {
-  const auto source = [&](std::size_t plane, int y) -> Source {
-    const float* row = block.cells(plane, y);
-    return {row - 1, row, row + dense_width};
-  };
-  sweep<ink, Rows<dense_width>>(
-      k, DensePlanes{block.plane}, source, [](int) {}, parity, block, outcome);
+  show(-1);
+  show(0);
+  link(-1);
+  for (int y = 0; y < tile::side; ++y) {
+    show(y + 1);
+    link(y);
+    const Surroundings<DenseRows::pitch> here{{rows.shown(y - 1), rows.shown(y), rows.shown(y + 1)},
+                                              {rows.linked(y - 1), rows.linked(y)}};
+    step_row<ink>(
+        k, planes, here,
+        {now.cells(0, y), next.cells(0, y), now.cells(tile::still_begin, y), now.cells(tile::paper_begin, y)},
+        y, tally);
+  }
+  if constexpr (ink) tally.finish(outcome);
 }
 
 }  // namespace
 
 extern const StepKernels FUDE_STEP_KERNELS;
-const StepKernels FUDE_STEP_KERNELS{step_tile<true>, step_tile<false>, step_dense<true>, step_dense<false>};
+const StepKernels FUDE_STEP_KERNELS{{step_tile<true>, make_edges_anew<true>, step_dense<true>},
+                                    {step_tile<false>, make_edges_anew<false>, step_dense<false>}};
 
 }  // namespace fude

@@ -19,18 +19,27 @@ struct TileOutcome {
   std::uint16_t wet = 0;
 };
 
-// The dense lattice steps blocks of this width, tile::side rows high, in planes over the whole sheet.
+// The dense lattice steps blocks of this width, tile::side rows high, in planes over the whole sheet, with as
+// many cells as `dense_margin` on either side and a row below and above.
 inline constexpr int dense_width = 128;
+inline constexpr int dense_margin = 16;
+
+using Neighbourhood = std::array<float*, tile::neighbourhood>;
+
+struct StageKernels {
+  // Steps the tile in the middle of nine blocks in place. Reads their edges of `parity`, writes its own of
+  // the other. `next`: those of the tile most likely to be stepped after it.
+  void (*tile)(const LatticeNumbers&, const Neighbourhood&, const Neighbourhood& next, int parity,
+               TileOutcome&);
+  // Makes the edges of `parity` of a tile whose cells have been changed.
+  void (*edges)(const LatticeNumbers&, float* block, int parity);
+  // Steps a block of the dense lattice: reads the flowing planes of `now`, writes those of `next`.
+  void (*dense)(const LatticeNumbers&, const PlaneView& now, const PlaneView& next, TileOutcome&);
+};
 
 struct StepKernels {
-  // All of the ink: blocks of the nine tiles of the neighbourhood, the parity to read.
-  void (*tile)(const LatticeNumbers&, const std::array<float*, tile::neighbourhood>&, int parity,
-               TileOutcome&);
-  // Stream, block and collide alone, without fronts, evaporation or pigment.
-  void (*tile_water)(const LatticeNumbers&, const std::array<float*, tile::neighbourhood>&, int parity,
-                     TileOutcome&);
-  void (*dense)(const LatticeNumbers&, const PlaneView&, int parity, TileOutcome&);
-  void (*dense_water)(const LatticeNumbers&, const PlaneView&, int parity, TileOutcome&);
+  StageKernels full;   // all of the ink
+  StageKernels water;  // stream, block and collide alone, without fronts, evaporation or pigment
 };
 
 // The kernels for a set that the processor has.

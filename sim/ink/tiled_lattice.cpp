@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "sim/compute/arena.h"
 #include "sim/ink/lattice.h"
@@ -16,7 +17,7 @@ class TiledLattice final : public Lattice {
         tile_columns_(tiles_across(setup.columns)),
         tile_rows_(tiles_across(setup.rows)),
         blocks_(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_), nullptr),
-        arena_(tile::part_floats, tile::chunk_tiles, tile::parts),
+        arena_(tile::block_floats, tile::chunk_tiles),
         outside_(arena_.take()) {
     const PlaneView outside = arena_view(outside_);
     for (int y = 0; y < tile::side; ++y) {
@@ -27,7 +28,6 @@ class TiledLattice final : public Lattice {
 
   std::vector<AwakeTile>& awake() override { return awake_; }
   const std::map<TilePlace, FixedPigment>& asleep() const override { return asleep_; }
-  int parity() const override { return parity_; }
 
   AwakeTile& wake(TilePlace place) override {
     const auto at = std::ranges::lower_bound(awake_, place, {}, &AwakeTile::place);
@@ -40,9 +40,12 @@ class TiledLattice final : public Lattice {
     wake_where_water_comes();
     if (++steps_ % steps_between_sweeps == 0) sleep_where_none_can_come();
     if (!neighbours_known_) know_neighbours();
-    const auto kernel = stage == Stage::full ? setup_.kernels->tile : setup_.kernels->tile_water;
-    setup_.threads->for_each(
-        awake_.size(), [&](std::size_t i) { kernel(setup_.numbers, neighbours_[i], parity_, outcomes_[i]); });
+    const StageKernels& kernels = stage == Stage::full ? setup_.kernels->full : setup_.kernels->water;
+    make_edges(stage, kernels);
+    setup_.threads->for_each(awake_.size(), [&](std::size_t i) {
+      const Neighbourhood& next = neighbours_[i + 1 < awake_.size() ? i + 1 : i];
+      kernels.tile(setup_.numbers, neighbours_[i], next, parity_, outcomes_[i]);
+    });
     parity_ = 1 - parity_;
     double evaporated = 0;
     for (std::size_t i = 0; stage == Stage::full && i < awake_.size(); ++i) {
@@ -75,14 +78,26 @@ class TiledLattice final : public Lattice {
     float* memory = arena_.take();
     block(place) = memory;
     const PlaneView view = arena_view(memory);
-    for (std::size_t part = 0; part < tile::parts; ++part)
-      std::fill_n(memory + static_cast<std::ptrdiff_t>(part) * tile::part_stride, tile::part_floats, 0.0F);
+    std::fill_n(memory, tile::block_floats, 0.0F);
     setup_.texture.fill(place.column * tile::side, place.row * tile::side, view);
     if (const auto kept = asleep_.find(place); kept != asleep_.end()) {
-      lay_fixed(view, parity_, kept->second);
+      lay_fixed(view, kept->second);
       asleep_.erase(kept);
     }
-    return {place, view, 0};
+    return {place, view};
+  }
+
+  // The edges of tiles that others have changed; of all tiles where the last step was of another stage.
+  void make_edges(Stage stage, const StageKernels& kernels) {
+    if (stage != edges_of_) {
+      for (AwakeTile& t : awake_) t.changed = true;
+      for (int parity : {0, 1}) kernels.edges(setup_.numbers, outside_, parity);
+      edges_of_ = stage;
+    }
+    for (AwakeTile& t : awake_) {
+      if (t.changed) kernels.edges(setup_.numbers, t.view.flowing, parity_);
+      t.changed = false;
+    }
   }
 
   // A wet edge may spill into the tile beside it in the next step, so that tile must be awake by then.
@@ -129,7 +144,7 @@ class TiledLattice final : public Lattice {
   }
 
   void give_back(const AwakeTile& t) {
-    arena_.give_back(t.view.origin);
+    arena_.give_back(t.view.flowing);
     block(t.place) = nullptr;
   }
 
@@ -157,10 +172,11 @@ class TiledLattice final : public Lattice {
   float* outside_;  // stands for what is off the sheet or asleep: dry and closed
   std::vector<AwakeTile> awake_;
   std::vector<TileOutcome> outcomes_;
-  std::vector<std::array<float*, tile::neighbourhood>> neighbours_;
+  std::vector<Neighbourhood> neighbours_;
   std::map<TilePlace, FixedPigment> asleep_;
   bool neighbours_known_ = false;
-  int parity_ = 0;
+  int parity_ = 0;  // of the edges that the next step reads
+  std::optional<Stage> edges_of_;
   int steps_ = 0;
 };
 

@@ -24,15 +24,6 @@ TEST(Arena, HandsOutDistinctAlignedZeroBlocksAndTakesThemBack) {
   EXPECT_EQ(arena.bytes(), bytes);
 }
 
-TEST(Arena, LaysEqualPartsOfItsBlocksTogether) {
-  Arena arena(32, 4, 3);
-  float* first = arena.take();
-  float* second = arena.take();
-  EXPECT_EQ(second - first, 32);
-  for (std::ptrdiff_t part = 0; part < 3; ++part) std::fill_n(first + part * 4 * 32, 32, 1.0F);
-  for (std::ptrdiff_t part = 0; part < 3; ++part) EXPECT_EQ(second[part * 4 * 32], 0);
-}
-
 TEST(Arena, RefusesBlocksThatSplitCacheLines) { EXPECT_THROW(Arena(17, 4), std::invalid_argument); }
 
 }  // namespace

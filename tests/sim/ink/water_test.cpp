@@ -57,21 +57,21 @@ class PeriodicSheet {
 
   void step(int steps) {
     const StepKernels& kernels = step_kernels(widest_instruction_set());
+    for (int t = 0; t < tiles_; ++t) kernels.water.edges(numbers_, block(t), parity_);
     for (int s = 0; s < steps; ++s) {
       for (int t = 0; t < tiles_; ++t) {
-        std::array<float*, tile::neighbourhood> blocks{};
+        Neighbourhood blocks{};
         for (int i = 0; i < 9; ++i)
           blocks[static_cast<std::size_t>(i)] = block((t + i % 3 - 1 + tiles_) % tiles_);
         TileOutcome outcome;
-        kernels.tile_water(numbers_, blocks, parity_, outcome);
+        kernels.water.tile(numbers_, blocks, blocks, parity_, outcome);
       }
       parity_ = 1 - parity_;
     }
   }
 
   float& at(std::size_t i, int x, int y) {
-    return cells(x / tile::side, static_cast<std::size_t>(parity_) * tile::flowing_planes + i,
-                 y)[x % tile::side];
+    return cells(x / tile::side, i, y)[x % tile::side];
   }
 
   Flow flow(int x, int y) {
@@ -107,7 +107,7 @@ class PeriodicSheet {
   int tiles_;
   int parity_ = 0;
   LatticeNumbers numbers_;
-  Arena arena_{tile::part_floats, tile::chunk_tiles, tile::parts};
+  Arena arena_{tile::block_floats, tile::chunk_tiles};
   std::vector<float*> blocks_;
 };
 
