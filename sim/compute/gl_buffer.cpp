@@ -7,6 +7,12 @@ namespace {
 
 GLintptr signed_size(std::size_t n) { return static_cast<GLintptr>(n); }
 
+tl::unexpected<Error> no_room(std::size_t bytes) {
+  return failure(Fault::unsupported, "the graphics card has no room for " +
+                                         std::to_string(bytes / 1'000'000) +
+                                         " MB more: use --backend cpu, larger cells or a smaller sheet");
+}
+
 }  // namespace
 
 Result<GlBuffer> GlBuffer::make(std::size_t bytes) {
@@ -18,10 +24,7 @@ Result<GlBuffer> GlBuffer::make(std::size_t bytes) {
   glBindBuffer(GL_COPY_WRITE_BUFFER, buffer.id_);
   glBufferData(GL_COPY_WRITE_BUFFER, signed_size(bytes), nullptr, GL_DYNAMIC_COPY);
   glClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  if (glGetError() != GL_NO_ERROR)
-    return failure(Fault::unsupported, "the graphics card has no room for " +
-                                           std::to_string(bytes / 1'000'000) +
-                                           " MB more: use --backend cpu, larger cells or a smaller sheet");
+  if (glGetError() != GL_NO_ERROR) return no_room(bytes);
   return buffer;
 }
 
@@ -59,6 +62,31 @@ void GlBuffer::copy_to(const GlBuffer& to, std::size_t from_offset, std::size_t 
   glBindBuffer(GL_COPY_WRITE_BUFFER, to.id_);
   glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, signed_size(from_offset),
                       signed_size(to_offset), signed_size(count));
+}
+
+Result<GlTexels> GlTexels::make(std::size_t bytes) {
+  constexpr std::size_t bytes_a_texel = 16;
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (bytes / bytes_a_texel > static_cast<std::size_t>(most)) return no_room(bytes);
+  auto buffer = GlBuffer::make(bytes);
+  if (!buffer) return tl::unexpected(buffer.error());
+  GlTexels texels;
+  texels.buffer_ = std::move(*buffer);
+  glGenTextures(1, &texels.texture_);
+  glBindTexture(GL_TEXTURE_BUFFER, texels.texture_);
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, texels.buffer_.id());
+  if (glGetError() != GL_NO_ERROR) return no_room(bytes);
+  return texels;
+}
+
+GlTexels::~GlTexels() {
+  if (texture_ != 0) glDeleteTextures(1, &texture_);
+}
+
+void GlTexels::bind_texture(unsigned unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_BUFFER, texture_);
 }
 
 Result<GlReadBack> GlReadBack::begin(const GlBuffer& from, std::size_t offset, std::size_t bytes) {

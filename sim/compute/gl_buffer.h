@@ -49,6 +49,33 @@ class GlBuffer {
   std::size_t bytes_ = 0;
 };
 
+// A buffer that shaders also read as a texture of vec4: `layout(binding = unit) samplerBuffer`.
+class GlTexels {
+ public:
+  GlTexels() = default;
+  // Zeros. Errors: unsupported, when the card has no room or textures of that size.
+  static Result<GlTexels> make(std::size_t bytes);
+
+  GlTexels(GlTexels&& other) noexcept { swap(other); }
+  GlTexels& operator=(GlTexels&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~GlTexels();
+
+  const GlBuffer& buffer() const { return buffer_; }
+  void bind_texture(unsigned unit) const;
+
+ private:
+  void swap(GlTexels& other) noexcept {
+    std::swap(buffer_, other.buffer_);
+    std::swap(texture_, other.texture_);
+  }
+
+  GlBuffer buffer_;
+  unsigned texture_ = 0;
+};
+
 template <class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));

@@ -111,7 +111,7 @@ GlProgram::~GlProgram() {
 }
 
 void GlProgram::run(std::uint32_t groups_x, std::uint32_t groups_y) const {
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   glUseProgram(id_);
   glDispatchCompute(groups_x, groups_y, 1);
 }

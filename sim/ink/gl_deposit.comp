@@ -28,6 +28,7 @@ struct Taken {
 layout(std430, binding = 1) restrict readonly buffer Cells { Cell cells[]; };
 layout(std430, binding = 2) restrict readonly buffer Touches { Touch touches[]; };
 layout(std430, binding = 3) restrict writeonly buffer Takings { Taken takings[]; };
+layout(std430, binding = 4) restrict writeonly buffer Surface { vec4 surface_next[]; };
 
 uniform int count;  // cells
 
@@ -35,10 +36,11 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index < count) {
     Cell cell = cells[index];
-    int at = address(cell.slot, still_count, 0, cell.cell);
-    float water = total(population_at(cell.slot, cell.cell));
-    float surface = still_planes[at];
-    vec4 surface_mass = still_quad(at + CELLS);
+    int pair = pair_at(cell.slot, cell.cell);
+    vec4 surface_mass = texelFetch(surface_now, pair);
+    vec4 levels = texelFetch(surface_now, pair + CELLS);
+    float water = total(population_of(levels[rest_level], texelFetch(moving_now, pair), texelFetch(moving_now, pair + CELLS)));
+    float surface = levels[surface_level];
     for (int i = cell.first; i < cell.first + cell.touches; ++i) {
       Touch t = touches[i];
       float taken;
@@ -46,7 +48,8 @@ void main() {
       touch(numbers, water, t.wetness, t.strength, t.fresh, t.contact, surface, surface_mass, taken, taken_mass);
       takings[i] = Taken(taken_mass, taken, 0.0, 0.0, 0.0);
     }
-    still_planes[at] = surface;
-    put_still_quad(at + CELLS, surface_mass);
+    levels[surface_level] = surface;
+    surface_next[pair] = surface_mass;
+    surface_next[pair + CELLS] = levels;
   }
 }

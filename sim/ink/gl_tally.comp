@@ -21,14 +21,14 @@ void main() {
   if (index < count) {
     int x = index & (SIDE - 1);
     int slot = neighbours[index / SIDE * 9 + 4];
-    int at = address(slot, still_count, 0, x);
+    int at = pair_at(slot, x) + CELLS;
     double evaporated = columns[slot * SIDE + x].evaporated;
     uint wet = 0u;
     for (int y = 0; y < SIDE; ++y) {
-      int cell = at + y * SIDE;
-      evaporated += double(still_planes[cell + evaporated_plane * CELLS]);
+      vec4 levels = texelFetch(surface_now, at + y * SIDE);
+      evaporated += double(levels[evaporated_level]);
       uint bits = (y < MARGIN ? 1u : 0u) | (y >= SIDE - MARGIN ? 2u : 0u) | 4u;
-      wet |= still_planes[cell + wet_plane * CELLS] > 0.0 ? bits : 0u;
+      wet |= levels[wet_level] > 0.0 ? bits : 0u;
     }
     columns[slot * SIDE + x].evaporated = evaporated;
     columns[slot * SIDE + x].wet = wet;

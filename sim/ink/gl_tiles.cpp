@@ -9,10 +9,8 @@
 namespace fude {
 namespace {
 
-constexpr std::size_t plane_bytes = tile::cells * sizeof(float);
-constexpr std::size_t population_planes = 9;
-constexpr std::size_t mass_planes = tile::flowing_planes - population_planes;
-constexpr std::size_t still_count = tile::still_planes + 2;  // and what the last step noted (gl_tiles.inc)
+constexpr std::size_t pair_bytes = pair_floats * sizeof(float);
+constexpr std::size_t paper_bytes = paper_floats * sizeof(float);
 constexpr std::size_t first_slots = 64;
 constexpr int outside = 0;  // the slot that stands for what is off the sheet or asleep: dry and closed
 
@@ -37,9 +35,19 @@ TilePlace beside(TilePlace place, std::size_t i) {
   return {place.row + static_cast<int>(i / 3) - 1, place.column + static_cast<int>(i % 3) - 1};
 }
 
-std::size_t offset(int slot, std::size_t planes, std::size_t plane = 0) {
-  return (static_cast<std::size_t>(slot) * planes + plane) * plane_bytes;
+std::size_t offset(int slot, std::size_t bytes_a_slot) {
+  return static_cast<std::size_t>(slot) * bytes_a_slot;
 }
+
+// A tile's planes one after the other, at first all nought.
+struct Planes {
+  std::vector<float> memory = std::vector<float>(tile::planes * tile::cells);
+  PlaneView view{memory.data(), tile::side, tile::cells};
+
+  void lay(std::size_t first, const float* from, std::size_t count) {
+    std::copy_n(from, count * tile::cells, view.cells(first, 0));
+  }
+};
 
 template <class T>
 T require(Result<T> result) {
@@ -47,28 +55,26 @@ T require(Result<T> result) {
   return std::move(*result);
 }
 
-std::span<const std::byte> as_bytes(const float* first, std::size_t count) {
-  return std::as_bytes(std::span(first, count));
-}
-
 }  // namespace
 
-GlTiles::GlTiles(const PaperTexture& texture, int columns, int rows)
-    : texture_(texture), columns_(columns), rows_(rows) {}
+GlTiles::GlTiles(const LatticeNumbers& numbers, const PaperTexture& texture, int columns, int rows)
+    : numbers_(numbers), texture_(texture), columns_(columns), rows_(rows) {}
 
 Result<GlTiles> GlTiles::make(const LatticeNumbers& numbers, const PaperTexture& texture, int columns,
                               int rows) {
-  GlTiles tiles(texture, columns, rows);
+  GlTiles tiles(numbers, texture, columns, rows);
   auto block = GlBuffer::make((sizeof(LatticeNumbers) + 15) / 16 * 16);
   if (!block) return tl::unexpected(block.error());
-  tiles.numbers_ = std::move(*block);
-  tiles.numbers_.write(0, std::as_bytes(std::span(&numbers, 1)));
+  tiles.number_block_ = std::move(*block);
+  tiles.number_block_.write(0, std::as_bytes(std::span(&numbers, 1)));
   if (auto grown = tiles.grow(first_slots); !grown) return tl::unexpected(grown.error());
   tiles.free_.pop_back();
-  const std::vector<float> blocking(tile::cells, tile::closed_blocking);
-  const std::vector<float> grain(tile::cells, tile::closed_grain);
-  tiles.paper_.write(offset(outside, tile::paper_planes, tile::blocking), bytes_of(blocking));
-  tiles.paper_.write(offset(outside, tile::paper_planes, tile::grain), bytes_of(grain));
+  Planes closed;
+  std::fill_n(closed.view.cells(tile::paper_begin + tile::blocking, 0), tile::cells, tile::closed_blocking);
+  std::fill_n(closed.view.cells(tile::paper_begin + tile::grain, 0), tile::cells, tile::closed_grain);
+  const TileTexels texels = texels_of(numbers, closed.view);
+  for (const GlTexels& shown : tiles.shown_)
+    shown.buffer().write(offset(outside, pair_bytes), bytes_of(texels.shown));
   return tiles;
 }
 
@@ -80,7 +86,7 @@ bool GlTiles::on_sheet(TilePlace place) const {
 Result<void> GlTiles::grow(std::size_t slots) {
   GLint64 most = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-  if (slots * still_count * plane_bytes > static_cast<std::size_t>(most))
+  if (slots * pair_bytes > static_cast<std::size_t>(most))
     return failure(Fault::unsupported,
                    "the graphics card has no room for so much wet paper: use --backend cpu or larger cells");
   const auto enlarge = [&](GlBuffer& buffer, std::size_t bytes_a_slot) -> Result<void> {
@@ -90,13 +96,16 @@ Result<void> GlTiles::grow(std::size_t slots) {
     buffer = std::move(*larger);
     return {};
   };
-  for (int parity : {0, 1}) {
-    const auto p = static_cast<std::size_t>(parity);
-    if (auto done = enlarge(populations_[p], population_planes * plane_bytes); !done) return done;
-    if (auto done = enlarge(masses_[p], mass_planes * plane_bytes); !done) return done;
-  }
-  if (auto done = enlarge(still_, still_count * plane_bytes); !done) return done;
-  if (auto done = enlarge(paper_, tile::paper_planes * plane_bytes); !done) return done;
+  const auto enlarge_texels = [&](GlTexels& texels, std::size_t bytes_a_slot) -> Result<void> {
+    auto larger = GlTexels::make(slots * bytes_a_slot);
+    if (!larger) return tl::unexpected(larger.error());
+    if (slots_ > 0) texels.buffer().copy_to(larger->buffer(), 0, 0, slots_ * bytes_a_slot);
+    texels = std::move(*larger);
+    return {};
+  };
+  for (GlTexels* pairs : {&moving_[0], &moving_[1], &shown_[0], &shown_[1], &surface_, &pigment_})
+    if (auto done = enlarge_texels(*pairs, pair_bytes); !done) return done;
+  if (auto done = enlarge_texels(paper_, paper_bytes); !done) return done;
   if (auto done = enlarge(column_sums_, tile::side * sizeof(Column)); !done) return done;
   if (auto done = enlarge(neighbours_, tile::neighbourhood * sizeof(std::int32_t)); !done) return done;
   neighbours_written_ = false;
@@ -115,32 +124,30 @@ int GlTiles::free_slot() {
 GlTiles::Awake& GlTiles::wake(TilePlace place) {
   if (const auto found = awake_.find(place); found != awake_.end()) return found->second;
   const int slot = free_slot();
-  const auto p = static_cast<std::size_t>(parity_);
-  populations_[p].clear(offset(slot, population_planes), population_planes * plane_bytes);
-  masses_[p].clear(offset(slot, mass_planes), mass_planes * plane_bytes);
-  still_.clear(offset(slot, still_count), still_count * plane_bytes);
-  std::vector<float> block(tile::planes * tile::cells);
-  const PlaneView view{block.data(), tile::side, tile::cells};
-  texture_.fill(place.column * tile::side, place.row * tile::side, view);
-  paper_.write(offset(slot, tile::paper_planes),
-               as_bytes(view.cells(tile::paper_begin, 0), tile::paper_planes * tile::cells));
   if (sleepers_.contains(place)) collect_sleepers();
-  if (const auto kept = asleep_.find(place); kept != asleep_.end()) {
-    put_fixed(slot, kept->second);
-    asleep_.erase(kept);
-  }
+  const auto kept = asleep_.find(place);
+  put_fixed(slot, place, kept == asleep_.end() ? FixedPigment(4 * tile::cells) : kept->second);
+  if (kept != asleep_.end()) asleep_.erase(kept);
   neighbours_written_ = false;
   return awake_[place] = {slot, 0, steps_};
 }
 
-void GlTiles::put_fixed(int slot, const FixedPigment& pigment) {
-  std::vector<float> block(tile::planes * tile::cells);
-  const PlaneView view{block.data(), tile::side, tile::cells};
-  lay_fixed(view, pigment);
-  still_.write(offset(slot, still_count, tile::fixed_mass),
-               as_bytes(view.cells(tile::still_begin + tile::fixed_mass, 0), 4 * tile::cells));
-  masses_[static_cast<std::size_t>(parity_)].write(offset(slot, mass_planes, tile::fixed_ink - tile::mass),
-                                                   as_bytes(view.cells(tile::fixed_ink, 0), tile::cells));
+void GlTiles::put(int slot, const TileTexels& texels) {
+  const auto p = static_cast<std::size_t>(parity_);
+  const std::size_t at = offset(slot, pair_bytes);
+  moving_[p].buffer().write(at, bytes_of(texels.moving));
+  shown_[p].buffer().write(at, bytes_of(texels.shown));
+  surface_.buffer().write(at, bytes_of(texels.surface));
+  pigment_.buffer().write(at, bytes_of(texels.pigment));
+  paper_.buffer().write(offset(slot, paper_bytes), bytes_of(texels.paper));
+}
+
+// A dry tile.
+void GlTiles::put_fixed(int slot, TilePlace place, const FixedPigment& pigment) {
+  Planes planes;
+  texture_.fill(place.column * tile::side, place.row * tile::side, planes.view);
+  planes.lay(tile::still_begin + tile::fixed_mass, pigment.data(), 4);
+  put(slot, texels_of(numbers_, planes.view));
 }
 
 int GlTiles::pour(TilePlace place) {
@@ -161,13 +168,16 @@ void GlTiles::step(const GlInkPrograms& programs) {
   }
   if (!neighbours_written_) write_neighbours();
   const auto now = static_cast<std::size_t>(parity_);
-  numbers_.bind_uniforms(0);
-  populations_[now].bind_storage(0);
-  populations_[1 - now].bind_storage(1);
-  masses_[now].bind_storage(2);
-  masses_[1 - now].bind_storage(3);
-  still_.bind_storage(4);
-  paper_.bind_storage(5);
+  number_block_.bind_uniforms(0);
+  moving_[now].bind_texture(0);
+  surface_.bind_texture(1);
+  shown_[now].bind_texture(2);
+  pigment_.bind_texture(3);
+  paper_.bind_texture(4);
+  moving_[1 - now].buffer().bind_storage(0);
+  surface_.buffer().bind_storage(1);
+  shown_[1 - now].buffer().bind_storage(2);
+  pigment_.buffer().bind_storage(3);
   neighbours_.bind_storage(6);
   column_sums_.bind_storage(7);
   if (!awake_.empty()) {
@@ -238,8 +248,8 @@ void GlTiles::sleep_where_none_can_come() {
 }
 
 void GlTiles::fall_asleep(TilePlace place, int slot) {
-  sleepers_[place] =
-      require(GlReadBack::begin(still_, offset(slot, still_count, tile::fixed_mass), 4 * plane_bytes));
+  sleepers_[place] = require(
+      GlReadBack::begin(pigment_.buffer(), offset(slot, pair_bytes) + pair_bytes / 2, pair_bytes / 2));
   free_.push_back(slot);
 }
 
@@ -247,7 +257,8 @@ void GlTiles::collect_sleepers() {
   for (const auto& [place, back] : sleepers_) {
     const std::vector<std::byte> bytes = back.collect();
     FixedPigment pigment(4 * tile::cells);
-    std::memcpy(pigment.data(), bytes.data(), bytes.size());
+    for (std::size_t i = 0; i < pigment.size(); ++i)
+      std::memcpy(&pigment[i % 4 * tile::cells + i / 4], &bytes[i * sizeof(float)], sizeof(float));
     if (std::ranges::any_of(pigment, [](float m) { return m != 0; })) asleep_[place] = std::move(pigment);
   }
   sleepers_.clear();
@@ -266,9 +277,10 @@ void GlTiles::write_neighbours() {
 }
 
 void GlTiles::bind_for_deposit() const {
-  numbers_.bind_uniforms(0);
-  populations_[static_cast<std::size_t>(parity_)].bind_storage(0);
-  still_.bind_storage(4);
+  number_block_.bind_uniforms(0);
+  moving_[static_cast<std::size_t>(parity_)].bind_texture(0);
+  surface_.bind_texture(1);
+  surface_.buffer().bind_storage(4);
 }
 
 std::vector<TilePlace> GlTiles::places() const {
@@ -307,20 +319,23 @@ TileCopies GlTiles::copies(const CellRect& rect) const {
   constexpr std::size_t view_planes = tile::still_begin + tile::still_planes;
   TileCopies copies{std::vector<float>(wanted.size() * view_planes * tile::cells), {}};
   if (wanted.empty()) return copies;
-  const GlBuffer staging = require(GlBuffer::make(wanted.size() * view_planes * plane_bytes));
-  const auto p = static_cast<std::size_t>(parity_);
+  const std::array<const GlBuffer*, 3> groups = {&moving_[static_cast<std::size_t>(parity_)].buffer(),
+                                                 &surface_.buffer(), &pigment_.buffer()};
+  const GlBuffer staging = require(GlBuffer::make(wanted.size() * groups.size() * pair_bytes));
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      groups[g]->copy_to(staging, offset(wanted[i].second.slot, pair_bytes),
+                         (i * groups.size() + g) * pair_bytes, pair_bytes);
+  std::vector<float> texels(wanted.size() * groups.size() * pair_floats);
+  staging.read(0, std::as_writable_bytes(std::span(texels)));
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto& [place, t] = wanted[i];
-    const std::size_t to = i * view_planes * plane_bytes;
-    populations_[p].copy_to(staging, offset(t.slot, population_planes), to, population_planes * plane_bytes);
-    masses_[p].copy_to(staging, offset(t.slot, mass_planes), to + tile::mass * plane_bytes,
-                       mass_planes * plane_bytes);
-    still_.copy_to(staging, offset(t.slot, still_count), to + tile::still_begin * plane_bytes,
-                   tile::still_planes * plane_bytes);
-    copies.tiles.push_back(
-        {place, {copies.memory.data() + i * view_planes * tile::cells, tile::side, tile::cells}, t.wet});
+    const PlaneView view{copies.memory.data() + i * view_planes * tile::cells, tile::side, tile::cells};
+    const auto pairs = [&](std::size_t g) {
+      return std::span<const float>(texels).subspan((i * groups.size() + g) * pair_floats, pair_floats);
+    };
+    fill_planes(pairs(0), pairs(1), pairs(2), view);
+    copies.tiles.push_back({wanted[i].first, view, wanted[i].second.wet});
   }
-  staging.read(0, std::as_writable_bytes(std::span(copies.memory)));
   return copies;
 }
 
@@ -342,19 +357,16 @@ void GlTiles::load(const InkSnapshot::Tile& saved) {
   const TilePlace place{saved.row, saved.column};
   if (!saved.wet) {
     if (const auto found = awake_.find(place); found != awake_.end())
-      put_fixed(found->second.slot, saved.planes);
+      put_fixed(found->second.slot, place, saved.planes);
     else
       asleep_[place] = saved.planes;
     return;
   }
-  const int slot = pour(place);
-  const auto p = static_cast<std::size_t>(parity_);
-  const auto planes = [&](std::size_t first, std::size_t count) {
-    return as_bytes(saved.planes.data() + first * tile::cells, count * tile::cells);
-  };
-  populations_[p].write(offset(slot, population_planes), planes(0, population_planes));
-  masses_[p].write(offset(slot, mass_planes), planes(tile::mass, mass_planes));
-  still_.write(offset(slot, still_count), planes(tile::flowing_planes, tile::still_planes));
+  Planes planes;
+  texture_.fill(place.column * tile::side, place.row * tile::side, planes.view);
+  planes.lay(0, saved.planes.data(), tile::flowing_planes);
+  planes.lay(tile::still_begin, saved.planes.data() + tile::flowing_planes * tile::cells, tile::still_planes);
+  put(pour(place), texels_of(numbers_, planes.view));
 }
 
 }  // namespace fude

@@ -10,6 +10,7 @@
 
 #include "sim/compute/gl_buffer.h"
 #include "sim/ink/gl_programs.h"
+#include "sim/ink/gl_tile_texels.h"
 #include "sim/ink/ink.h"
 #include "sim/ink/lattice.h"
 
@@ -62,7 +63,7 @@ class GlTiles {
     GlReadBack columns;
   };
 
-  GlTiles(const PaperTexture& texture, int columns, int rows);
+  GlTiles(const LatticeNumbers& numbers, const PaperTexture& texture, int columns, int rows);
 
   bool on_sheet(TilePlace place) const;
   Awake& wake(TilePlace place);
@@ -75,8 +76,10 @@ class GlTiles {
   void sleep_where_none_can_come();
   void write_neighbours();
   std::uint16_t wet_bits(std::span<const std::byte> columns, int slot) const;
-  void put_fixed(int slot, const FixedPigment& pigment);
+  void put(int slot, const TileTexels& texels);
+  void put_fixed(int slot, TilePlace place, const FixedPigment& pigment);
 
+  LatticeNumbers numbers_;
   PaperTexture texture_;
   int columns_;
   int rows_;
@@ -85,11 +88,12 @@ class GlTiles {
   std::map<TilePlace, GlReadBack> sleepers_;  // asleep, their pigment still on its way here
   std::vector<int> free_;
   std::size_t slots_ = 0;
-  GlBuffer numbers_;
-  std::array<GlBuffer, 2> populations_;
-  std::array<GlBuffer, 2> masses_;
-  GlBuffer still_;
-  GlBuffer paper_;
+  GlBuffer number_block_;
+  std::array<GlTexels, 2> moving_;  // of either parity
+  std::array<GlTexels, 2> shown_;
+  GlTexels surface_;
+  GlTexels pigment_;
+  GlTexels paper_;
   GlBuffer column_sums_;
   GlBuffer neighbours_;
   bool neighbours_written_ = false;
