@@ -64,7 +64,7 @@ void GlBuffer::copy_to(const GlBuffer& to, std::size_t from_offset, std::size_t 
                       signed_size(to_offset), signed_size(count));
 }
 
-Result<GlTexels> GlTexels::make(std::size_t bytes) {
+Result<GlTexels> GlTexels::make(std::size_t bytes, Kind kind) {
   constexpr std::size_t bytes_a_texel = 16;
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
@@ -75,7 +75,7 @@ Result<GlTexels> GlTexels::make(std::size_t bytes) {
   texels.buffer_ = std::move(*buffer);
   glGenTextures(1, &texels.texture_);
   glBindTexture(GL_TEXTURE_BUFFER, texels.texture_);
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, texels.buffer_.id());
+  glTexBuffer(GL_TEXTURE_BUFFER, kind == Kind::floats ? GL_RGBA32F : GL_RGBA32I, texels.buffer_.id());
   if (glGetError() != GL_NO_ERROR) return no_room(bytes);
   return texels;
 }

@@ -49,12 +49,14 @@ class GlBuffer {
   std::size_t bytes_ = 0;
 };
 
-// A buffer that shaders also read as a texture of vec4: `layout(binding = unit) samplerBuffer`.
+// A buffer that shaders also read as a texture of vec4 or ivec4.
 class GlTexels {
  public:
+  enum class Kind { floats, ints };
+
   GlTexels() = default;
   // Zeros. Errors: unsupported, when the card has no room or textures of that size.
-  static Result<GlTexels> make(std::size_t bytes);
+  static Result<GlTexels> make(std::size_t bytes, Kind kind = Kind::floats);
 
   GlTexels(GlTexels&& other) noexcept { swap(other); }
   GlTexels& operator=(GlTexels&& other) noexcept {
@@ -64,6 +66,7 @@ class GlTexels {
   ~GlTexels();
 
   const GlBuffer& buffer() const { return buffer_; }
+  // Makes it the shader's `layout(binding = unit) uniform samplerBuffer`, or isamplerBuffer.
   void bind_texture(unsigned unit) const;
 
  private:

@@ -17,22 +17,32 @@ layout(std430, binding = 0) restrict writeonly buffer Moving { vec4 moving_next[
 layout(std430, binding = 1) restrict writeonly buffer Surfaces { vec4 surface_next[]; };
 layout(std430, binding = 2) restrict writeonly buffer Sites { vec4 shown_next[]; };
 layout(std430, binding = 3) restrict writeonly buffer Pigment { vec4 pigment_next[]; };
-layout(std430, binding = 6) restrict readonly buffer Neighbours { int neighbours[]; };  // nine slots a tile
 
-int cell_x;
-int cell_y;
-int tile_begin;
 vec4 own_straight;
 vec4 own_diagonal;
 Site own_site;
 
-int pair_beside(int dx, int dy) {
-  int x = cell_x + dx;
-  int y = cell_y + dy;
-  int west = tile_begin + 3 * (y < 0 ? 0 : y < SIDE ? 1 : 2);
-  int slot = dx < 0 ? (x < 0 ? neighbours[west] : neighbours[west + 1]) : dx > 0 ? (x < SIDE ? neighbours[west + 1] : neighbours[west + 2]) : neighbours[west + 1];
-  return pair_at(slot, (y & (SIDE - 1)) * SIDE + (x & (SIDE - 1)));
+// Where the nine cells around this one begin, from below left, this one being number 4.
+int around[9];
+int own_slot;
+
+int pair_beside(int dx, int dy) { return around[4 + 3 * dy + dx]; }
+
+void look_around(int cell_x, int cell_y, int tile) {
+  int west_x = (cell_x - 1) & (SIDE - 1);
+  int east_x = (cell_x + 1) & (SIDE - 1);
+  for (int i = 0; i < 3; ++i) {
+    int y = cell_y + i - 1;
+    int up = y < 0 ? 0 : y < SIDE ? 1 : 2;
+    ivec3 slots = texelFetch(neighbours, 3 * tile + up).xyz;
+    if (i == 1) own_slot = slots.y;
+    int row = (y & (SIDE - 1)) * SIDE;
+    around[3 * i] = pair_at(cell_x == 0 ? slots.x : slots.y, row + west_x);
+    around[3 * i + 1] = pair_at(slots.y, row + cell_x);
+    around[3 * i + 2] = pair_at(cell_x == SIDE - 1 ? slots.z : slots.y, row + east_x);
+  }
 }
+
 // What a neighbour shows, and its population in the direction of component `plane`.
 Site site_beside(int pair) {
   return site_shown(Shown(texelFetch(shown_now, pair), texelFetch(shown_now, pair + CELLS)));
@@ -67,11 +77,8 @@ Crossing link(int side, int dx, int dy) {
 
 void main() {
   int cell = int(gl_GlobalInvocationID.x);
-  cell_x = cell & (SIDE - 1);
-  cell_y = cell / SIDE;
-  tile_begin = int(gl_WorkGroupID.y) * 9;
-  int slot = neighbours[tile_begin + 4];
-  int pair = pair_at(slot, cell);
+  look_around(cell & (SIDE - 1), cell / SIDE, int(gl_WorkGroupID.y));
+  int pair = around[4];
 
   own_straight = texelFetch(moving_now, pair);
   own_diagonal = texelFetch(moving_now, pair + CELLS);
@@ -79,7 +86,7 @@ void main() {
   vec4 levels = texelFetch(surface_now, pair + CELLS);
   vec4 mass = texelFetch(pigment_now, pair);
   vec4 fixed_mass = texelFetch(pigment_now, pair + CELLS);
-  vec4 textures = texelFetch(paper, slot * CELLS + cell);
+  vec4 textures = texelFetch(paper, own_slot * CELLS + cell);
   Population before = population_of(levels[rest_level], own_straight, own_diagonal);
   own_site = site_beside(pair);
   own_site.water = total(before);

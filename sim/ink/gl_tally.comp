@@ -5,7 +5,6 @@
 #include "site.k"
 #include "gl_tiles.inc"
 layout(local_size_x = 64) in;
-layout(std430, binding = 6) restrict readonly buffer Neighbours { int neighbours[]; };
 
 struct Column {
   double evaporated;  // since the buffer was made, whatever tiles had the slot
@@ -20,7 +19,7 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index < count) {
     int x = index & (SIDE - 1);
-    int slot = neighbours[index / SIDE * 9 + 4];
+    int slot = texelFetch(neighbours, 3 * (index / SIDE) + 1).y;
     int at = pair_at(slot, x) + CELLS;
     double evaporated = columns[slot * SIDE + x].evaporated;
     uint wet = 0u;

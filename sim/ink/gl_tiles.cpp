@@ -26,6 +26,8 @@ struct Column {
   std::uint32_t wet;
   std::uint32_t unused;
 };
+// The slots of three tiles side by side, and padding.
+using SlotRow = std::array<std::int32_t, 4>;
 constexpr std::uint32_t near_bottom = 1;
 constexpr std::uint32_t near_top = 2;
 constexpr std::uint32_t anywhere = 4;
@@ -107,7 +109,9 @@ Result<void> GlTiles::grow(std::size_t slots) {
     if (auto done = enlarge_texels(*pairs, pair_bytes); !done) return done;
   if (auto done = enlarge_texels(paper_, paper_bytes); !done) return done;
   if (auto done = enlarge(column_sums_, tile::side * sizeof(Column)); !done) return done;
-  if (auto done = enlarge(neighbours_, tile::neighbourhood * sizeof(std::int32_t)); !done) return done;
+  auto neighbours = GlTexels::make(slots * sizeof(std::array<SlotRow, 3>), GlTexels::Kind::ints);
+  if (!neighbours) return tl::unexpected(neighbours.error());
+  neighbours_ = std::move(*neighbours);
   neighbours_written_ = false;
   for (std::size_t slot = slots; slot-- > slots_;) free_.push_back(static_cast<int>(slot));
   slots_ = slots;
@@ -178,7 +182,7 @@ void GlTiles::step(const GlInkPrograms& programs) {
   surface_.buffer().bind_storage(1);
   shown_[1 - now].buffer().bind_storage(2);
   pigment_.buffer().bind_storage(3);
-  neighbours_.bind_storage(6);
+  neighbours_.bind_texture(5);
   column_sums_.bind_storage(7);
   if (!awake_.empty()) {
     const auto count = static_cast<std::uint32_t>(awake_.size());
@@ -265,14 +269,16 @@ void GlTiles::collect_sleepers() {
 }
 
 void GlTiles::write_neighbours() {
-  std::vector<std::int32_t> slots;
-  slots.reserve(awake_.size() * tile::neighbourhood);
-  for (const auto& [place, t] : awake_)
+  std::vector<SlotRow> slots(awake_.size() * 3);
+  std::size_t first = 0;
+  for (const auto& [place, t] : awake_) {
     for (std::size_t i = 0; i < tile::neighbourhood; ++i) {
       const auto found = awake_.find(beside(place, i));
-      slots.push_back(found == awake_.end() ? outside : found->second.slot);
+      slots[first + i / 3][i % 3] = found == awake_.end() ? outside : found->second.slot;
     }
-  neighbours_.write(0, bytes_of(slots));
+    first += 3;
+  }
+  neighbours_.buffer().write(0, bytes_of(slots));
   neighbours_written_ = true;
 }
 

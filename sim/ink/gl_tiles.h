@@ -95,7 +95,7 @@ class GlTiles {
   GlTexels pigment_;
   GlTexels paper_;
   GlBuffer column_sums_;
-  GlBuffer neighbours_;
+  GlTexels neighbours_;
   bool neighbours_written_ = false;
   int parity_ = 0;
   std::uint64_t steps_ = 0;
