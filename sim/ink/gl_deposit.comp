@@ -39,7 +39,8 @@ void main() {
     int pair = pair_at(cell.slot, cell.cell);
     vec4 surface_mass = texelFetch(surface_now, pair);
     vec4 levels = texelFetch(surface_now, pair + CELLS);
-    float water = total(population_of(levels[rest_level], texelFetch(moving_now, pair), texelFetch(moving_now, pair + CELLS)));
+    float water = total(population_of(levels[rest_level], texelFetch(moving_now, pair),
+                                      texelFetch(moving_now, pair + CELLS)));
     float surface = levels[surface_level];
     for (int i = cell.first; i < cell.first + cell.touches; ++i) {
       Touch t = touches[i];

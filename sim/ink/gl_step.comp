@@ -95,7 +95,8 @@ void main() {
   Population after;
   float water;
   float evaporated;
-  step_cell(numbers, numbers.relaxation > 1.0, own_site, before, mass, surface, surface_mass, fixed_mass, after, water, evaporated);
+  step_cell(numbers, numbers.relaxation > 1.0, own_site, before, mass, surface, surface_mass, fixed_mass, after,
+            water, evaporated);
 
   precise float fixed_ink = (fixed_mass.x + fixed_mass.y) + (fixed_mass.z + fixed_mass.w);
   Shown seen = shown(site_of(numbers, total(after), mass, fixed_ink, textures.x, textures.y, textures.z));

@@ -23,10 +23,10 @@ inline constexpr std::size_t floats_a_texel = 4;
 inline constexpr std::size_t pair_floats = 2 * floats_a_texel * tile::cells;
 inline constexpr std::size_t paper_floats = floats_a_texel * tile::cells;
 
-// planes: all of tile::planes, flowing ones of parity 0; fixed_ink follows from the fixed masses.
+// planes: all of tile::planes; fixed_ink follows from the fixed masses.
 TileTexels texels_of(const LatticeNumbers& numbers, const PlaneView& planes);
 
-// Fills the flowing planes of parity 0 and the still ones. Each span: pair_floats.
+// Fills the flowing and the still planes. Each span: pair_floats.
 void fill_planes(std::span<const float> moving, std::span<const float> surface,
                  std::span<const float> pigment, const PlaneView& planes);
 

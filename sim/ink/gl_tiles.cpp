@@ -322,7 +322,7 @@ TileCopies GlTiles::copies(const CellRect& rect) const {
         y + tile::side > rect.bottom)
       wanted.emplace_back(place, t);
   }
-  constexpr std::size_t view_planes = tile::still_begin + tile::still_planes;
+  constexpr std::size_t view_planes = tile::paper_begin;
   TileCopies copies{std::vector<float>(wanted.size() * view_planes * tile::cells), {}};
   if (wanted.empty()) return copies;
   const std::array<const GlBuffer*, 3> groups = {&moving_[static_cast<std::size_t>(parity_)].buffer(),
@@ -370,8 +370,7 @@ void GlTiles::load(const InkSnapshot::Tile& saved) {
   }
   Planes planes;
   texture_.fill(place.column * tile::side, place.row * tile::side, planes.view);
-  planes.lay(0, saved.planes.data(), tile::flowing_planes);
-  planes.lay(tile::still_begin, saved.planes.data() + tile::flowing_planes * tile::cells, tile::still_planes);
+  planes.lay(0, saved.planes.data(), tile::paper_begin);
   put(pour(place), texels_of(numbers_, planes.view));
 }
 
