@@ -137,18 +137,22 @@ CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows) {
 
 void read_tile(const AwakeTile& t, float per_area, InkRegion& region) {
   const Cut c = cut(t.place, region.rect);
-  for (int y = c.bottom; y < c.top; ++y)
-    for (int x = c.left; x < c.right; ++x) {
-      const std::size_t i = region_index(region, t.place, x, y);
-      float water = 0;
-      for (std::size_t f = tile::rest; f <= tile::se; ++f) water += t.view.cells(f, y)[x];
-      region.flow_water[i] = water;
-      region.surface_water[i] = t.view.cells(tile::still_begin + tile::surface, y)[x];
-      for (std::size_t m = 0; m < mass_planes; ++m)
-        region.pigment[i][m] = per_area * (t.view.cells(tile::mass + m, y)[x] +
-                                           t.view.cells(tile::still_begin + tile::surface_mass + m, y)[x] +
-                                           t.view.cells(tile::still_begin + tile::fixed_mass + m, y)[x]);
+  for (int y = c.bottom; y < c.top && c.left < c.right; ++y) {
+    const std::size_t first = region_index(region, t.place, c.left, y);
+    const auto cells = [&](std::size_t plane) { return t.view.cells(plane, y) + c.left; };
+    const auto count = static_cast<std::size_t>(c.right - c.left);
+    std::copy_n(cells(tile::still_begin + tile::surface), count, region.surface_water.data() + first);
+    float* water = region.flow_water.data() + first;
+    for (std::size_t f = tile::rest; f <= tile::se; ++f)
+      for (std::size_t x = 0; x < count; ++x) water[x] += cells(f)[x];
+    for (std::size_t m = 0; m < mass_planes; ++m) {
+      const float* flow = cells(tile::mass + m);
+      const float* surface = cells(tile::still_begin + tile::surface_mass + m);
+      const float* fixed = cells(tile::still_begin + tile::fixed_mass + m);
+      for (std::size_t x = 0; x < count; ++x)
+        region.pigment[first + x][m] = per_area * (flow[x] + surface[x] + fixed[x]);
     }
+  }
 }
 
 void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_area, InkRegion& region) {
