@@ -77,7 +77,7 @@ BrushBench bench_brush(const BrushSpec& spec, int runs) {
   bench.frames = frames;
   for (int run = 0; run < runs; ++run) {
     TuftState state = rest_state(tuft);
-    TuftSurface before;
+    FootprintSweep sweep;
     for (int f = 0; f < frames; ++f) {
       const auto i = static_cast<std::size_t>(f);
       SolveReport report;
@@ -87,8 +87,7 @@ BrushBench bench_brush(const BrushSpec& spec, int runs) {
           {{swollen(surface_of(tuft, state.x, state.paper_from_handle), spec.soak_mm), frame_s}}};
       bool touched = false;
       const double footprint =
-          microseconds([&] { touched = sweep(before, now, tuft.spec.cell_mm, texture, loads).has_value(); });
-      before = now[0].surface;
+          microseconds([&] { touched = sweep.sweep(now, tuft.spec.cell_mm, texture, loads).has_value(); });
       solve_us[i] = std::min(solve_us[i], solve);
       if (touched) footprint_us[i] = std::min(footprint_us[i], footprint);
       if (run > 0) continue;

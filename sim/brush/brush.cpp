@@ -59,15 +59,16 @@ void Brush::away(double elapsed_s) {
   state_.footprint = {};
 }
 
-TimedSurface Brush::surface() const {
-  const double soak_mm = tuft_.spec.soak_mm * wetness(state_.loading);
-  return {swollen(surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle), soak_mm),
-          state_.footprint.since_s};
+TuftSurface Brush::surface_at_footprint() const {
+  const Footprint& f = state_.footprint;
+  return swollen(surface_of(tuft_, f.x, f.paper_from_handle), f.soak_mm);
 }
 
-void Brush::take_footprint() {
+TimedSurface Brush::take_footprint() {
+  const double since_s = state_.footprint.since_s;
   state_.footprint = {true, state_.tuft.x, state_.tuft.paper_from_handle,
                       tuft_.spec.soak_mm * wetness(state_.loading), 0};
+  return {surface_at_footprint(), since_s};
 }
 
 BrushFrame Brush::move(const BrushInput& input) {
@@ -89,9 +90,7 @@ BrushFrame Brush::move(const BrushInput& input) {
   Footprint& footprint = state_.footprint;
   const bool jumped = input.after_gap || elapsed_s > gap_s || !footprint.taken ||
                       (target.translation - start.translation).norm() > jump_mm;
-  const TuftSurface before =
-      jumped ? TuftSurface{}
-             : swollen(surface_of(tuft_, footprint.x, footprint.paper_from_handle), footprint.soak_mm);
+  if (jumped) sweep_.come_from_nowhere();
   frame.steps = jumped ? 1
                        : std::clamp(static_cast<int>(std::ceil(elapsed_s / tuft_.spec.longest_step_s - 1e-6)),
                                     1, most_steps);
@@ -103,12 +102,11 @@ BrushFrame Brush::move(const BrushInput& input) {
     take_worse(frame.solve, advance(tuft_, state_.tuft, pose, step_s, jumped));
     footprint.since_s += step_s;
     if (!jumped && footprint.since_s < tuft_.spec.footprint_step_s - 1e-6) continue;
-    after.push_back(surface());
-    take_footprint();
+    after.push_back(take_footprint());
   }
 
   std::vector<InkLoad> loads = offered(state_.loading);
-  std::optional<FootprintMap> map = sweep(before, after, tuft_.spec.cell_mm, texture_, loads);
+  std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, texture_, loads);
   if (map) frame.deposit = Deposit{std::move(*map), std::move(loads)};
   return frame;
 }
@@ -129,6 +127,10 @@ void Brush::reshape() {
 void Brush::restore(const BrushState& state) {
   if (state.tuft.x.size() != state_.tuft.x.size()) throw std::invalid_argument("the state of another tuft");
   state_ = state;
+  if (state_.footprint.taken)
+    sweep_.come_from(surface_at_footprint());
+  else
+    sweep_.come_from_nowhere();
 }
 
 TuftShape Brush::shape() const {

@@ -89,12 +89,13 @@ class Brush {
 
  private:
   void away(double elapsed_s);
-  TimedSurface surface() const;
-  void take_footprint();
+  TuftSurface surface_at_footprint() const;
+  TimedSurface take_footprint();
 
   Tuft tuft_;
   HairTexture texture_;
   BrushState state_;
+  FootprintSweep sweep_;  // follows state_.footprint
 };
 
 }  // namespace fude

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/brush/scanline.h"
-
 namespace fude {
 
 using Eigen::Vector2d;
@@ -21,23 +19,36 @@ CoverageFrame frame_around(const Vector2d& low, const Vector2d& high, double cel
   return f;
 }
 
-Coverage::Coverage(const CoverageFrame& frame)
-    : frame_(frame),
-      bits_(static_cast<std::size_t>(frame.words) * static_cast<std::size_t>(frame.rows) * samples_per_side) {
+void Coverage::reset(const CoverageFrame& frame) {
+  frame_ = frame;
+  bits_.assign(
+      static_cast<std::size_t>(frame.words) * static_cast<std::size_t>(frame.rows) * samples_per_side, 0);
 }
 
-void Coverage::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+void Coverage::move_to(const CoverageFrame& frame) {
+  const CoverageFrame old = frame_;
+  std::swap(bits_, moved_);
+  reset(frame);
+  const std::int64_t first_row = std::max(old.first_row, frame.first_row);
+  const std::int64_t end_row = std::min(old.first_row + old.rows, frame.first_row + frame.rows);
+  const std::int64_t first_word = std::max(old.first_word, frame.first_word);
+  const std::int64_t end_word = std::min(old.first_word + old.words, frame.first_word + frame.words);
+  if (first_word >= end_word) return;
+  for (std::int64_t line = first_row * samples_per_side; line < end_row * samples_per_side; ++line) {
+    const auto from = (line - old.first_row * samples_per_side) * old.words - old.first_word;
+    const auto to = (line - frame.first_row * samples_per_side) * frame.words - frame.first_word;
+    std::copy(moved_.begin() + from + first_word, moved_.begin() + from + end_word,
+              bits_.begin() + to + first_word);
+  }
+}
 
-// Samples whose centres lie in [from, to), in samples from the frame's left edge.
-void Coverage::add_span(int sample_row, double from, double to) {
-  const int width = frame_.words * 64;
-  const int first = first_centre(from, width);
-  const int last = first_centre(to, width) - 1;
-  if (first > last) return;
-  std::uint64_t* words = line(sample_row);
-  const int a = first >> 6;
-  const int b = last >> 6;
-  const std::uint64_t head = ~std::uint64_t{0} << (first & 63);
+void Coverage::add_span(int sample_row, int from, int to) {
+  if (from >= to) return;
+  std::uint64_t* words = bits_.data() + static_cast<std::ptrdiff_t>(sample_row) * frame_.words;
+  const int last = to - 1;
+  const int a = from / samples_per_word;
+  const int b = last / samples_per_word;
+  const std::uint64_t head = ~std::uint64_t{0} << (from & 63);
   const std::uint64_t tail = ~std::uint64_t{0} >> (63 - (last & 63));
   if (a == b) {
     words[a] |= head & tail;
@@ -48,14 +59,6 @@ void Coverage::add_span(int sample_row, double from, double to) {
   words[b] |= tail;
 }
 
-void Coverage::add_triangle(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  const double scale = samples_per_side / frame_.cell_mm;
-  const Vector2d origin(frame_.left_mm(), frame_.bottom_mm());
-  scan_triangle((a - origin) * scale, (b - origin) * scale, (c - origin) * scale,
-                frame_.rows * samples_per_side,
-                [this](int row, double from, double to) { add_span(row, from, to); });
-}
-
 void Coverage::add(const Coverage& other) {
   for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] |= other.bits_[i];
 }
@@ -64,18 +67,24 @@ void Coverage::add_new(const Coverage& other, const Coverage& except) {
   for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] |= other.bits_[i] & ~except.bits_[i];
 }
 
-bool Coverage::any(int row, int word) const {
-  std::uint64_t all = 0;
-  for (int s = 0; s < samples_per_side; ++s) all |= line(row * samples_per_side + s)[word];
-  return all != 0;
+std::uint64_t Coverage::cells(int row, int word) const {
+  std::uint64_t w = line(row, 0, word) | line(row, 1, word) | line(row, 2, word) | line(row, 3, word);
+  w |= w >> 1;
+  w |= w >> 2;
+  // The lowest bit of each nibble, drawn together.
+  w &= 0x1111111111111111ULL;
+  w = (w | w >> 3) & 0x0303030303030303ULL;
+  w = (w | w >> 6) & 0x000f000f000f000fULL;
+  w = (w | w >> 12) & 0x000000ff000000ffULL;
+  return (w | w >> 24) & 0xffff;
 }
 
-void Coverage::count_samples(int row, int word, std::uint8_t (&counts)[cells_per_word]) const {
+void Coverage::count_samples(int row, int word, SampleCounts& counts) const {
   // Bits of each nibble are added up side by side, then even and odd nibbles in bytes of their own.
   std::uint64_t even = 0;
   std::uint64_t odd = 0;
   for (int s = 0; s < samples_per_side; ++s) {
-    std::uint64_t w = line(row * samples_per_side + s)[word];
+    std::uint64_t w = line(row, s, word);
     w -= (w >> 1) & 0x5555555555555555ULL;
     w = (w & 0x3333333333333333ULL) + ((w >> 2) & 0x3333333333333333ULL);
     even += w & 0x0f0f0f0f0f0f0f0fULL;

@@ -78,8 +78,12 @@ SubmergedArc submerged_arc(const Station& s) {
   return arc;
 }
 
-ContactRing ring_of(const Station& s, const SubmergedArc& arc) {
+// A ring's place: its station's own, or up to three before or behind it.
+constexpr int places_per_station = 8;
+
+ContactRing ring_of(const Station& s, int station, const SubmergedArc& arc) {
   ContactRing ring;
+  ring.place = places_per_station * station;
   ring.along = s.along;
   for (int i = 0; i < ring_points; ++i) {
     const double around = arc.from + (arc.to - arc.from) * i / (ring_points - 1);
@@ -102,42 +106,51 @@ ContactRing narrowed(const ContactRing& ring, const Vector2d& low, const Vector2
   return narrow;
 }
 
+struct SubmergedStation {
+  const Station* station;
+  int index;
+  SubmergedArc arc;
+};
+
 // Where the surface leaves the paper between two stations its width falls as the root of its depth.
-void append_ending(const Station& wet, const SubmergedArc& wet_arc, const Station& dry,
-                   const SubmergedArc& dry_arc, bool opening, std::vector<ContactRing>& run) {
-  const ContactRing ring = ring_of(wet, wet_arc);
-  const Vector2d low = section_point(wet, wet_arc.lowest).head<2>();
-  const Vector2d far = section_point(dry, dry_arc.lowest).head<2>();
-  const double share = wet_arc.depth / (wet_arc.depth - dry_arc.depth);
+void append_ending(const SubmergedStation& wet, const SubmergedStation& dry,
+                   std::vector<ContactRing>& rings) {
+  const ContactRing ring = ring_of(*wet.station, wet.index, wet.arc);
+  const Vector2d low = section_point(*wet.station, wet.arc.lowest).head<2>();
+  const SubmergedArc dry_arc = submerged_arc(*dry.station);
+  const Vector2d far = section_point(*dry.station, dry_arc.lowest).head<2>();
+  const double share = wet.arc.depth / (wet.arc.depth - dry_arc.depth);
+  const bool opening = dry.index < wet.index;
   constexpr std::array<double, 3> steps = {0.64, 0.91, 1};
   constexpr std::array<double, 3> widths = {0.6, 0.3, 0};
   for (int i = 0; i < 3; ++i) {
     const std::size_t j = index(opening ? 2 - i : i);
     const double t = share * steps[j];
-    run.push_back(
-        narrowed(ring, low, low + t * (far - low), wet.along + t * (dry.along - wet.along), widths[j]));
+    rings.push_back(narrowed(ring, low, low + t * (far - low),
+                             wet.station->along + t * (dry.station->along - wet.station->along), widths[j]));
+    rings.back().place += opening ? i - 3 : i + 1;
   }
 }
 
 // A steep tip touches with its point alone, which no section's plane shows.
-void append_tip(const Station& tip, Contact& contact) {
+void append_tip(const Station& tip, int station, Contact& contact) {
   const double r = tip.minor;
   const double height = tip.centre.z();
   if (height >= r) return;
   const double radius = elementary::square_root(r * r - height * height * (height > 0 ? 1 : 0));
-  std::vector<ContactRing> run;
   for (int i = -2; i <= 2; ++i) {
     const double y = radius * i / 2;
     const double half = elementary::square_root(std::max(0.0, radius * radius - y * y));
     ContactRing ring;
+    ring.place = places_per_station * (station + 1) + i;
     ring.along = 1;
     for (int j = 0; j < ring_points; ++j) {
       ring.point[index(j)] = tip.centre.head<2>() + Vector2d(half * (j - 2) / 2, y);
       ring.around[index(j)] = 0.25;
     }
-    run.push_back(ring);
+    contact.rings.push_back(ring);
   }
-  contact.runs.push_back(run);
+  contact.run_ends.push_back(contact.rings.size());
 }
 
 }  // namespace
@@ -223,30 +236,30 @@ double largest_motion_mm(const TuftSurface& a, const TuftSurface& b) {
   return largest;
 }
 
-Contact contact_of(const TuftSurface& surface) {
-  Contact contact;
-  std::vector<SubmergedArc> arcs;
-  arcs.reserve(surface.size());
-  for (const Station& s : surface) {
-    const double widest = std::max({s.major_a, s.major_b, s.minor});
-    arcs.push_back(s.centre.z() < widest ? submerged_arc(s) : SubmergedArc{});
+void contact_of(const TuftSurface& surface, Contact& contact) {
+  contact.rings.clear();
+  contact.run_ends.clear();
+  const int count = static_cast<int>(surface.size());
+  const auto submerged = [&](int i) {
+    const Station& s = surface[index(i)];
+    const bool near = s.centre.z() < std::max({s.major_a, s.major_b, s.minor});
+    return SubmergedStation{&s, i, near ? submerged_arc(s) : SubmergedArc{}};
+  };
+  const auto dips = [](const SubmergedStation& s) { return s.arc.from < s.arc.to; };
+  SubmergedStation before{};
+  for (int i = 0; i < count; ++i) {
+    const SubmergedStation here = submerged(i);
+    if (dips(here)) {
+      if (i > 0 && !dips(before)) append_ending(here, before, contact.rings);
+      contact.rings.push_back(ring_of(*here.station, i, here.arc));
+      if (i + 1 == count) contact.run_ends.push_back(contact.rings.size());
+    } else if (i > 0 && dips(before)) {
+      append_ending(before, here, contact.rings);
+      contact.run_ends.push_back(contact.rings.size());
+    }
+    before = here;
   }
-  std::vector<ContactRing> run;
-  const auto known = [&](std::size_t i) { return std::isfinite(arcs[i].depth); };
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    const bool wet = arcs[i].from < arcs[i].to;
-    if (!wet) continue;
-    if (run.empty() && i > 0 && known(i - 1))
-      append_ending(surface[i], arcs[i], surface[i - 1], arcs[i - 1], true, run);
-    run.push_back(ring_of(surface[i], arcs[i]));
-    const bool last = i + 1 == surface.size();
-    if (!last && arcs[i + 1].from < arcs[i + 1].to) continue;
-    if (!last && known(i + 1)) append_ending(surface[i], arcs[i], surface[i + 1], arcs[i + 1], false, run);
-    contact.runs.push_back(run);
-    run.clear();
-  }
-  if (!surface.empty()) append_tip(surface.back(), contact);
-  return contact;
+  if (count > 0) append_tip(surface.back(), count - 1, contact);
 }
 
 }  // namespace fude

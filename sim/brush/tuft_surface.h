@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "signal/pose.h"
@@ -41,6 +43,7 @@ double largest_motion_mm(const TuftSurface& a, const TuftSurface& b);
 // Points where one section dips into the paper, from side to side, seen from above.
 inline constexpr int ring_points = 5;
 struct ContactRing {
+  int place = 0;  // grows from root to tip; equal for the same part of the tuft in another state of it
   double along = 0;
   std::array<Eigen::Vector2d, ring_points> point;  // mm
   std::array<double, ring_points> around{};        // turns about the spine from the lateral line
@@ -48,10 +51,16 @@ struct ContactRing {
 
 // What of the surface is in the paper: runs of rings, each run one patch of wetted paper.
 struct Contact {
-  std::vector<std::vector<ContactRing>> runs;
+  std::vector<ContactRing> rings;
+  std::vector<std::size_t> run_ends;  // one beyond the last ring of each run
+  std::span<const ContactRing> run(std::size_t i) const {
+    const std::size_t first = i == 0 ? 0 : run_ends[i - 1];
+    return std::span(rings).subspan(first, run_ends[i] - first);
+  }
 };
 
-// The paper cuts the surface at z = 0; the shrunk section keeps it from cutting deeper.
-Contact contact_of(const TuftSurface& surface);
+// The paper cuts the surface at z = 0; the shrunk section keeps it from cutting deeper. Takes the place
+// of what was in `contact`, in its memory.
+void contact_of(const TuftSurface& surface, Contact& contact);
 
 }  // namespace fude

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <random>
+#include <vector>
 
 #include "sim/brush/coverage.h"
+#include "sim/brush/winding_fill.h"
 #include "tests/sim/brush/gesture.h"
 
 namespace fude {
@@ -48,37 +53,99 @@ Brush wet_brush(const BrushSpec& spec = {}) {
   return brush;
 }
 
+using Point = Eigen::Vector2d;
+
+// Triangles as a fan of one quad each: its second half is empty.
+Coverage filled(const CoverageFrame& frame, const std::vector<std::array<Point, 3>>& triangles) {
+  WindingFill filling;
+  filling.start(frame);
+  for (const auto& [a, b, c] : triangles) filling.add_quad(a, b, c, a);
+  Coverage cover;
+  cover.reset(frame);
+  filling.fill(cover);
+  return cover;
+}
+
+// Samples covered in every cell, row by row.
+std::vector<int> samples(const Coverage& cover) {
+  std::vector<int> all;
+  SampleCounts counts;
+  for (int row = 0; row < cover.frame().rows; ++row)
+    for (int word = 0; word < cover.frame().words; ++word) {
+      cover.count_samples(row, word, counts);
+      all.insert(all.end(), std::begin(counts), std::end(counts));
+      const int most = *std::max_element(std::begin(counts), std::end(counts));
+      const int least = *std::min_element(std::begin(counts), std::end(counts));
+      EXPECT_EQ(cover.any(row, word), most > 0);
+      EXPECT_EQ(cover.whole(row, word), least == 16);
+      for (int c = 0; c < cells_per_word; ++c) EXPECT_EQ(cover.cells(row, word) >> c & 1, counts[c] > 0);
+    }
+  return all;
+}
+
 TEST(Coverage, TriangleCoversItsArea) {
   const CoverageFrame frame = frame_around({-1.03, 2.01}, {3.3, 4.2}, 0.05);
-  Coverage cover(frame);
-  cover.add_triangle({-1, 2.05}, {3.2, 2.4}, {0.7, 4.1});
-  double cells = 0;
-  std::uint8_t counts[cells_per_word];
-  for (int row = 0; row < frame.rows; ++row)
-    for (int word = 0; word < frame.words; ++word) {
-      cover.count_samples(row, word, counts);
-      for (const std::uint8_t c : counts) cells += c / 16.0;
-    }
+  const std::vector<int> cells = samples(filled(frame, {{Point(-1, 2.05), {3.2, 2.4}, {0.7, 4.1}}}));
   const double area = 0.5 * std::abs(4.2 * 2.05 - 0.35 * 1.7);
-  EXPECT_NEAR(cells * 0.05 * 0.05, area, 0.003 * area);
+  EXPECT_NEAR(std::accumulate(cells.begin(), cells.end(), 0) / 16.0 * 0.05 * 0.05, area, 0.003 * area);
 }
 
 TEST(Coverage, NeighbouringTrianglesShareNoSample) {
   const CoverageFrame frame = frame_around({0, 0}, {3, 3}, 0.05);
-  Coverage one(frame);
-  Coverage two(frame);
-  Coverage both(frame);
-  one.add_triangle({0.1, 0.2}, {2.7, 0.4}, {1.3, 2.9});
-  two.add_triangle({2.7, 0.4}, {1.3, 2.9}, {2.9, 2.2});
-  both.add_new(two, one);
-  std::uint8_t all[cells_per_word];
-  std::uint8_t rest[cells_per_word];
-  for (int row = 0; row < frame.rows; ++row)
-    for (int word = 0; word < frame.words; ++word) {
-      two.count_samples(row, word, all);
-      both.count_samples(row, word, rest);
-      for (int c = 0; c < cells_per_word; ++c) ASSERT_EQ(all[c], rest[c]);
-    }
+  const Coverage one = filled(frame, {{Point(0.1, 0.2), {2.7, 0.4}, {1.3, 2.9}}});
+  const Coverage two = filled(frame, {{Point(2.7, 0.4), {1.3, 2.9}, {2.9, 2.2}}});
+  Coverage rest;
+  rest.reset(frame);
+  rest.add_new(two, one);
+  EXPECT_EQ(samples(two), samples(rest));
+}
+
+TEST(Coverage, TrianglesOverEachOtherAreFilledOnceWhicheverWayTheyTurn) {
+  const CoverageFrame frame = frame_around({-3, -2}, {3, 3}, 0.05);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> place(-1.9, 2.9);
+  std::vector<std::array<Point, 3>> triangles;
+  Coverage each;
+  each.reset(frame);
+  for (int i = 0; i < 12; ++i) {
+    triangles.push_back({Point(place(random), place(random)), Point(place(random), place(random)),
+                         Point(place(random), place(random))});
+    each.add(filled(frame, {triangles.back()}));
+    EXPECT_EQ(samples(filled(frame, triangles)), samples(each));
+  }
+}
+
+TEST(Coverage, KeepsItsSamplesOverAnotherFrame) {
+  const std::array<Point, 3> triangle = {Point(-0.9, 0.2), {2.7, 0.4}, {1.3, 2.9}};
+  const CoverageFrame narrow = frame_around({-1, 0}, {3, 3}, 0.05);
+  const CoverageFrame wide = frame_around({-2.3, -1.1}, {4, 5}, 0.05);
+  Coverage moved = filled(narrow, {triangle});
+  moved.move_to(wide);
+  EXPECT_EQ(samples(moved), samples(filled(wide, {triangle})));
+  moved.move_to(narrow);
+  EXPECT_EQ(samples(moved), samples(filled(narrow, {triangle})));
+}
+
+// A gesture interrupted by a snapshot leaves the very same maps.
+TEST(Footprint, GoesOnWithTheSameBitsFromASnapshot) {
+  const auto pose = [](double t) { return leaning(30 * ease(t), 4 * t, 31 - 8 * ease(3 * t), 0.3, 1); };
+  Brush whole = wet_brush();
+  Brush resumed = wet_brush();
+  int maps = 0;
+  for (double t = 0; t < 1; t += 0.005) {
+    Brush other(BrushSpec{}, 3);
+    other.restore(resumed.state());
+    resumed = other;
+    const BrushFrame a = whole.move(input_at(t, pose(t)));
+    const BrushFrame b = resumed.move(input_at(t, pose(t)));
+    ASSERT_EQ(a.deposit.has_value(), b.deposit.has_value());
+    if (!a.deposit) continue;
+    ++maps;
+    EXPECT_EQ(a.deposit->map.fresh, b.deposit->map.fresh);
+    EXPECT_EQ(a.deposit->map.contact_s, b.deposit->map.contact_s);
+    EXPECT_EQ(a.deposit->map.patch, b.deposit->map.patch);
+  }
+  EXPECT_GT(maps, 100);
 }
 
 TEST(Footprint, RestingBrushOnlyTouches) {
