@@ -39,12 +39,12 @@ Result<void> paint_into_picture(const Session& session, const ReplaySettings& se
 }
 
 Result<void> run(const PaintingOptions& options) {
-  const auto settings = options.settings();
-  if (!settings) return tl::unexpected(settings.error());
   const auto file = find_shared("sessions", "yong", ".fude");
   if (!file) return tl::unexpected(file.error());
   const auto session = read_session(*file);
   if (!session) return tl::unexpected(session.error());
+  const auto settings = options.settings(session->settings);
+  if (!settings) return tl::unexpected(settings.error());
 #ifdef FUDE_WINDOW
   const auto is_set = [](const char* name) {
     const char* value = std::getenv(name);

@@ -27,14 +27,14 @@ Result<std::vector<ScriptedEvent>> load_script(const std::string& file) {
 
 Result<void> run(const Options& options) {
   StudioSetup setup;
-  auto settings = options.painting.settings();
-  if (!settings) return tl::unexpected(settings.error());
-  setup.settings = std::move(*settings);
   if (!options.session.empty()) {
     auto session = read_session(options.session);
     if (!session) return tl::unexpected(session.error());
     setup.played = std::move(*session);
   }
+  auto settings = options.painting.settings(setup.played ? setup.played->settings : RecordedSettings{});
+  if (!settings) return tl::unexpected(settings.error());
+  setup.settings = std::move(*settings);
   if (!options.script.empty()) {
     auto script = load_script(options.script);
     if (!script) return tl::unexpected(script.error());

@@ -1,8 +1,11 @@
 #include "app/painting_options.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "rig/share_folder.h"
@@ -19,6 +22,13 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
+// Reads back as the same number.
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
 Result<Settle> parse_settle(const std::string& text) {
   if (text == "dry") return Settle{.until_dry = true};
   const auto seconds = number(text);
@@ -28,6 +38,10 @@ Result<Settle> parse_settle(const std::string& text) {
 }
 
 }  // namespace
+
+std::string as_text(Extent extent) {
+  return shortest(extent.width.value) + "x" + shortest(extent.height.value);
+}
 
 Result<Extent> parse_extent(const std::string& text, const std::string& option) {
   const std::size_t cross = text.find('x');
@@ -41,14 +55,19 @@ Result<Extent> parse_extent(const std::string& text, const std::string& option) 
 }
 
 void PaintingOptions::add_to(CLI::App& command) {
-  command.add_option("--brush", brush, "a brush of share/brushes, or a TOML file");
-  command.add_option("--paper", paper, "a paper of share/papers, or a TOML file");
-  command.add_option("--size-mm", size_mm, "the sheet, WxH; default: the tablet's active area");
+  command.add_option("--brush", brush,
+                     "a brush of share/brushes, or a TOML file; default: the session's, else round-goat");
+  command.add_option("--paper", paper,
+                     "a paper of share/papers, or a TOML file; default: the session's, else xuan");
+  command.add_option("--size-mm", size_mm,
+                     "the sheet, WxH; default: the session's, else the tablet's active area");
   command.add_option("--tablet-mm", tablet_mm, "active area of a tablet that does not say it, WxH");
-  command.add_option("--cell-mm", cell_mm, "cell of the paper, one pixel of the picture");
-  command.add_option("--ink", ink, "endless: the brush stays full")
+  command.add_option("--cell-mm", cell_mm,
+                     "cell of the paper, one pixel of the picture; default: the session's, else 0.1");
+  command.add_option("--ink", ink, "normal, or endless: the brush stays full")
       ->check(CLI::IsMember({"normal", "endless"}));
-  command.add_option("--flow", flow, "off: strokes are laid down dry")->check(CLI::IsMember({"on", "off"}));
+  command.add_option("--flow", flow, "on, or off: strokes are laid down dry")
+      ->check(CLI::IsMember({"on", "off"}));
   command.add_option("--settle", settle, "seconds to go on after the last input, or 'dry'");
   command.add_option("--backend", backend, "what runs the ink")->check(CLI::IsMember({"cpu", "gl", "auto"}));
   command.add_option("--isa", isa, "instructions of the CPU back-end")
@@ -56,22 +75,52 @@ void PaintingOptions::add_to(CLI::App& command) {
   command.add_option("--threads", threads, "of the CPU back-end; 0: as many as processors");
 }
 
-Result<ReplaySettings> PaintingOptions::settings() const {
+namespace {
+
+// Text of a file of share/`kind`, or of the session where none is named.
+struct Named {
+  std::string text;
+  std::string source;
+};
+
+Result<Named> named(const std::string& kind, const std::string& name, const RecordedSettings& recorded,
+                    const std::string& key, const std::string& standard) {
+  if (const auto known = recorded.find(key); name.empty() && known != recorded.end())
+    return Named{known->second, "the session's " + key};
+  const auto path = find_shared(kind, name.empty() ? standard : name, ".toml");
+  if (!path) return tl::unexpected(path.error());
+  std::ifstream file(*path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) return failure(Fault::not_found, "cannot read the " + key + " " + path->string());
+  return Named{std::move(text), path->string()};
+}
+
+std::string given(const std::string& option, const RecordedSettings& recorded, const std::string& key,
+                  const std::string& standard) {
+  if (!option.empty()) return option;
+  const auto known = recorded.find(key);
+  return known == recorded.end() ? standard : known->second;
+}
+
+}  // namespace
+
+Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorded) const {
   ReplaySettings settings;
-  const auto brush_file = find_shared("brushes", brush, ".toml");
-  if (!brush_file) return tl::unexpected(brush_file.error());
-  auto brush_spec = read_brush_spec(brush_file->string());
+  const auto brush_text = named("brushes", brush, recorded, "brush", "round-goat");
+  if (!brush_text) return tl::unexpected(brush_text.error());
+  auto brush_spec = parse_brush_spec(brush_text->text, brush_text->source);
   if (!brush_spec) return tl::unexpected(brush_spec.error());
-  const auto paper_file = find_shared("papers", paper, ".toml");
-  if (!paper_file) return tl::unexpected(paper_file.error());
-  auto paper_spec = load_paper(*paper_file);
+  const auto paper_text = named("papers", paper, recorded, "paper", "xuan");
+  if (!paper_text) return tl::unexpected(paper_text.error());
+  auto paper_spec = read_paper(paper_text->text, paper_text->source);
   if (!paper_spec) return tl::unexpected(paper_spec.error());
 
-  if (!(cell_mm >= 0.01 && cell_mm <= 2))
+  const auto cell = number(given(cell_mm, recorded, "cell_mm", "0.1"));
+  if (!cell || !(*cell >= 0.01 && *cell <= 2))
     return failure(Fault::usage, "--cell-mm takes 0.01 to 2 millimetres");
   if (threads < 0 || threads > 256) return failure(Fault::usage, "--threads takes 0 to 256");
-  if (!size_mm.empty()) {
-    const auto size = parse_extent(size_mm, "--size-mm");
+  if (const std::string sheet = given(size_mm, recorded, "sheet_mm", ""); !sheet.empty()) {
+    const auto size = parse_extent(sheet, "--size-mm");
     if (!size) return tl::unexpected(size.error());
     settings.wish.sheet = *size;
   }
@@ -86,15 +135,22 @@ Result<ReplaySettings> PaintingOptions::settings() const {
 
   settings.reach = reach_of(*brush_spec);
   settings.painting.brush = std::move(*brush_spec);
-  settings.painting.endless = ink == "endless";
+  const std::string supply = given(ink, recorded, "ink", "normal");
+  settings.painting.endless = supply == "endless";
   InkSetup& setup = settings.painting.ink;
   setup.paper = std::move(*paper_spec);
-  setup.cell_mm = cell_mm;
-  setup.flow = flow == "on";
+  setup.cell_mm = *cell;
+  const std::string flowing = given(flow, recorded, "flow", "on");
+  setup.flow = flowing != "off";
   setup.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   setup.instruction_set = instruction_set_named(isa);
   setup.backend = backend == "auto" ? best_ink_backend() : backend == "gl" ? InkBackend::gl : InkBackend::cpu;
   settings.palette.pigments = {pigments()[0]};
+  settings.to_record = {{"brush", brush_text->text},
+                        {"paper", paper_text->text},
+                        {"cell_mm", shortest(*cell)},
+                        {"ink", supply},
+                        {"flow", flowing}};
   return settings;
 }
 

@@ -1,7 +1,7 @@
 // The options that say what to paint with and on: shared by replay, demo and paint.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <string>
 
 #include "rig/replay.h"
@@ -13,14 +13,19 @@ class App;
 
 namespace fude {
 
+// How a painting stood when it was recorded: the settings of a session. `brush` and `paper` are TOML text,
+// `sheet_mm` and `cell_mm` millimetres, `ink` and `flow` as the options of those names.
+using RecordedSettings = std::map<std::string, std::string>;
+
+// What is not given is as the session has it; else a round goat brush and ink on Xuan paper of 0.1 mm cells.
 struct PaintingOptions {
-  std::string brush = "round-goat";
-  std::string paper = "xuan";
+  std::string brush;
+  std::string paper;
   std::string size_mm;
   std::string tablet_mm;
-  double cell_mm = 0.1;
-  std::string ink = "normal";
-  std::string flow = "on";
+  std::string cell_mm;
+  std::string ink;
+  std::string flow;
   std::string settle = "0";
   std::string backend = "cpu";
   std::string isa = "auto";
@@ -30,10 +35,13 @@ struct PaintingOptions {
 
   // Reads the brush and the paper and checks every value.
   // Errors: usage, not_found, malformed.
-  Result<ReplaySettings> settings() const;
+  Result<ReplaySettings> settings(const RecordedSettings& recorded = {}) const;
 };
 
 // "WxH" in millimetres. Errors: usage, naming the option.
 Result<Extent> parse_extent(const std::string& text, const std::string& option);
+
+// The same the other way, exactly.
+std::string as_text(Extent extent);
 
 }  // namespace fude

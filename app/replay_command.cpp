@@ -40,10 +40,10 @@ Result<void> run(const Options& options) {
   // Before the work, not after it.
   for (const std::string& path : {options.out, options.report_file})
     if (auto r = check_target(path, options.force); !r) return r;
-  const auto settings = options.painting.settings();
-  if (!settings) return tl::unexpected(settings.error());
   const auto session = read_session(options.session);
   if (!session) return tl::unexpected(session.error());
+  const auto settings = options.painting.settings(session->settings);
+  if (!settings) return tl::unexpected(settings.error());
 
   auto replayed = [&] {
     const ProgressLine line("painting");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct ReplaySettings {
   SheetWish wish;
   Settle settle;
   Palette palette;
+  std::map<std::string, std::string> to_record;  // what a session painted with these says of them
 };
 
 struct Replayed {

@@ -2,11 +2,13 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <utility>
 
+#include "app/painting_options.h"
 #include "app/studio/mouse_pen.h"
 #include "app/studio/panel.h"
 #include "app/studio/sheet_image.h"
@@ -110,6 +112,7 @@ class Studio {
   struct KnownTablet {
     DeviceNumber number;
     std::optional<TabletMapping> mapping;  // none: its size is not known
+    bool near = false;                     // a pen is over it
   };
 
   // Their readers hand samples to the painting on their own threads. Without udev there is the mouse.
@@ -119,13 +122,17 @@ class Studio {
       const auto mapping = mapping_for(description, plan_.sheet);
       const std::lock_guard lock(tablets_mutex_);
       if (recorder) recorder->add(description);
-      known_tablets_.push_back({++devices_, mapping ? std::optional(*mapping) : std::nullopt});
+      known_tablets_.push_back({++devices_, mapping ? std::optional(*mapping) : std::nullopt, false});
       if (!mapping) notice_ = mapping.error().message;
     };
-    listener.heard = [this](std::size_t tablet, const Transfer&, const std::optional<PenSample>& pen) {
-      if (!pen) return;
+    listener.heard = [this, recorder](std::size_t tablet, const Transfer& transfer,
+                                      const std::optional<PenSample>& pen) {
       const std::lock_guard lock(tablets_mutex_);
-      const KnownTablet& known = known_tablets_[tablet];
+      KnownTablet& known = known_tablets_[tablet];
+      if (recorder) recorder->add(RecordedTransfer{known.number, transfer});
+      if (!pen) return;
+      known.near = pen->in_proximity;
+      pen_near_ = std::ranges::any_of(known_tablets_, &KnownTablet::near);
       if (!known.mapping) return;
       live_.pen({known.number, *pen, *known.mapping});
       mouse_shown_ = false;
@@ -138,8 +145,15 @@ class Studio {
   }
 
   WindowEvents events() {
-    return {.moved = [this](const Eigen::Vector2d& at) { move_to(view_.to_paper(at)); },
-            .button = [this](bool pressed) { handle(Button{pressed}); },
+    // The desktop moves its pointer with the pen of a tablet: that is no second hand.
+    return {.moved =
+                [this](const Eigen::Vector2d& at) {
+                  if (!pen_near_) move_to(view_.to_paper(at));
+                },
+            .button =
+                [this](bool pressed) {
+                  if (!pen_near_) handle(Button{pressed});
+                },
             .dragged = [this](const Eigen::Vector2d& by) { view_.pan(by); },
             .scrolled = [this](double notches,
                                const Eigen::Vector2d& at) { view_.zoom(notches > 0 ? 1.15 : 1 / 1.15, at); },
@@ -261,6 +275,7 @@ class Studio {
                          IM_COL32(0, 0, 0, 70));
     canvas.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(image_->texture())),
                     point(top_left), point(bottom_right));
+    if (pen_near_ && !ImGui::GetIO().WantCaptureMouse) ImGui::SetMouseCursor(ImGuiMouseCursor_None);
     if (status.pen.in_proximity) draw_tuft(canvas, view_, status.tuft);
     const PanelChoice choice = draw_panel(status, mouse_shown_, mouse_, step_ms_);
     if (choice.key) handle(*choice.key);
@@ -296,6 +311,7 @@ class Studio {
   std::size_t next_pen_ = 0;
   std::size_t next_action_ = 0;
   std::atomic<bool> mouse_shown_ = true;
+  std::atomic<bool> pen_near_ = false;
   bool quitting_ = false;
   std::string saved_;
   std::vector<std::string> shots_;  // of the window, wanted at the end of this frame
@@ -320,6 +336,8 @@ Result<void> run_studio(const StudioSetup& setup) {
     auto opened = Recorder::open(setup.out);
     if (!opened) return tl::unexpected(opened.error());
     recorder = std::move(*opened);
+    for (const auto& [key, value] : setup.settings.to_record) recorder->add(SessionSetting{key, value});
+    recorder->add(SessionSetting{"sheet_mm", as_text(plan->sheet)});
   }
   Studio studio(setup, *plan, std::move(*painting), recorder.get());
   if (auto done = studio.run(); !done) return done;

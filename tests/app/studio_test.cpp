@@ -118,7 +118,7 @@ TEST(StudioWindow, PaintsUndoesAndRecordsWhatAReplayPaintsAgain) {
   const std::string fude = FUDE_PROGRAM;
   const std::string in = "cd " + folder.string() + " && ";
   ASSERT_EQ(run(in + "xvfb-run -a -s '-screen 0 1280x960x24' " + fude +
-                " paint --script script --size-mm 80x60 --backend cpu --out live.fude --picture end.png"),
+                " paint --script script --size-mm 80x60 --paper branching --backend cpu --out live.fude --picture end.png"),
             0);
   const Image both = read(folder / "both.png");
   ASSERT_EQ(both.width, 800);
@@ -148,8 +148,11 @@ TEST(StudioWindow, PaintsUndoesAndRecordsWhatAReplayPaintsAgain) {
   EXPECT_LT(undone.darkest(200, 120, 600, 180), 100);
   EXPECT_GT(undone.darkest(200, 370, 600, 430), 200);
 
+  // On the paper that the session names, unless another is asked for.
   ASSERT_EQ(run(in + fude + " replay live.fude --out replay.png"), 0);
   EXPECT_EQ(run(in + "cmp end.png replay.png"), 0);
+  ASSERT_EQ(run(in + fude + " replay live.fude --paper xuan --out other.png"), 0);
+  EXPECT_NE(run(in + "cmp -s end.png other.png"), 0);
   std::filesystem::remove_all(folder);
 }
 
