@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace fude {
@@ -104,7 +106,23 @@ void LivePainting::publish() {
   changes_ = std::move(region);
 }
 
-void LivePainting::serve() {
+void LivePainting::serve() try { paint(); } catch (const std::bad_alloc&) {
+  fail({Fault::storage, "not enough memory to paint on; give a smaller --size-mm or a larger --cell-mm"});
+} catch (const std::runtime_error& error) {
+  fail({Fault::unsupported, error.what()});
+}
+
+void LivePainting::fail(Error error) {
+  const std::lock_guard lock(mutex_);
+  failed_ = std::move(error);
+}
+
+std::optional<Error> LivePainting::failed() const {
+  const std::lock_guard lock(mutex_);
+  return failed_;
+}
+
+void LivePainting::paint() {
   const double step_s = history_.painting().step_s();
   LiveClock::time_point start = LiveClock::now();
   LiveClock::time_point next_picture = start;

@@ -14,6 +14,7 @@
 #include "rig/inputs.h"
 #include "rig/recorder.h"
 #include "rig/replay.h"
+#include "signal/result.h"
 #include "sim/brush/brush.h"
 #include "sim/ink/ink.h"
 
@@ -51,6 +52,10 @@ class LivePainting {
 
   LiveStatus status() const;
 
+  // What ended the painting before its time: no memory left to paint in, or the graphics card has gone.
+  // Nothing is painted or recorded after it.
+  std::optional<Error> failed() const;
+
   // The cells that changed since the last call; nothing while the sheet rests.
   std::optional<InkRegion> take_changes();
 
@@ -63,6 +68,8 @@ class LivePainting {
  private:
   using LiveInput = std::variant<LivePen, Action>;
   void serve();
+  void paint();
+  void fail(Error error);
   void apply(const LiveInput& input);
   void publish();
 
@@ -73,6 +80,7 @@ class LivePainting {
   std::condition_variable wake_;
   std::vector<LiveInput> queue_;
   LiveStatus status_;
+  std::optional<Error> failed_;
   std::optional<InkRegion> changes_;
   CellRect unshown_;
   std::vector<double> latencies_ms_;

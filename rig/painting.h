@@ -54,6 +54,8 @@ struct PaintingState {
 class Painting {
  public:
   static Result<Painting> open(const PaintingSetup& setup);
+  // On an ink that is open already.
+  Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink);
 
   double step_s() const { return ink_->step_s(); }
   Step step() const { return step_; }
@@ -79,7 +81,6 @@ class Painting {
   const SolveCounts& solves() const { return solves_; }
 
  private:
-  Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink);
   void give_back_what_is_due();
 
   std::unique_ptr<Ink> ink_;

@@ -90,6 +90,7 @@ class Studio {
       window_->draw_frame();
       take_shots();
       window_->end_frame();
+      if (auto ended = live_.failed()) failed_ = std::move(ended);
       if (failed_) break;
     }
     image_.reset();

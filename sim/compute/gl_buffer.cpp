@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <stdexcept>
+
 namespace fude {
 namespace {
 
@@ -16,7 +18,8 @@ tl::unexpected<Error> no_room(std::size_t bytes) {
 }  // namespace
 
 Result<GlBuffer> GlBuffer::make(std::size_t bytes) {
-  while (glGetError() != GL_NO_ERROR) {
+  // A lost context may never run out of errors.
+  for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
   }
   GlBuffer buffer;
   buffer.bytes_ = bytes;
@@ -110,10 +113,10 @@ bool GlReadBack::arrived() const {
 }
 
 std::vector<std::byte> GlReadBack::collect() const {
-  constexpr GLuint64 a_second = 1'000'000'000;
-  while (glClientWaitSync(static_cast<GLsync>(fence_), GL_SYNC_FLUSH_COMMANDS_BIT, a_second) ==
-         GL_TIMEOUT_EXPIRED) {
-  }
+  constexpr GLuint64 patience_ns = 10'000'000'000;
+  const GLenum state = glClientWaitSync(static_cast<GLsync>(fence_), GL_SYNC_FLUSH_COMMANDS_BIT, patience_ns);
+  if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED)
+    throw std::runtime_error("the graphics card does not answer any more: use --backend cpu");
   std::vector<std::byte> bytes(staging_.bytes());
   staging_.read(0, bytes);
   return bytes;

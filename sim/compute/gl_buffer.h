@@ -100,7 +100,8 @@ class GlReadBack {
 
   // Whether the bytes are here: asks, never waits.
   bool arrived() const;
-  // The bytes; waits for them where they are still on their way.
+  // The bytes; waits for them where they are still on their way. Throws std::runtime_error where the card is
+  // lost, or takes ten seconds.
   std::vector<std::byte> collect() const;
 
  private:

@@ -83,6 +83,8 @@ struct InkSnapshot {
   std::vector<Exchange> ready;    // not yet collected
 };
 
+// Where memory or a graphics card gives out, any call but the plain numbers throws std::bad_alloc or a
+// std::runtime_error that says so in one line.
 class Ink {
  public:
   virtual ~Ink() = default;

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
 #include "rig/inputs.h"
 #include "rig/live_painting.h"
 #include "rig/replay.h"
@@ -181,6 +185,45 @@ TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
   EXPECT_EQ(recorded.pens.size(), script.pens.size());
   EXPECT_EQ(painted(recorded, s).picture_sha256, live_picture);
   std::filesystem::remove(path);
+}
+
+// An ink on a card that is full after some steps.
+class FullCard final : public Ink {
+ public:
+  FullCard(std::unique_ptr<Ink> ink, int steps) : ink_(std::move(ink)), steps_left_(steps) {}
+  int columns() const override { return ink_->columns(); }
+  int rows() const override { return ink_->rows(); }
+  double cell_mm() const override { return ink_->cell_mm(); }
+  double step_s() const override { return ink_->step_s(); }
+  void apply(const InkEvent& event) override { ink_->apply(event); }
+  void step() override {
+    if (steps_left_-- == 0) throw std::runtime_error("the card is full");
+    ink_->step();
+  }
+  std::vector<Exchange> collect() override { return ink_->collect(); }
+  InkTotals totals() const override { return ink_->totals(); }
+  std::uint64_t steps() const override { return ink_->steps(); }
+  std::size_t active_cells() const override { return ink_->active_cells(); }
+  CellRect active_rect() const override { return ink_->active_rect(); }
+  bool still() const override { return ink_->still(); }
+  InkRegion read(const CellRect& rect) const override { return ink_->read(rect); }
+  InkSnapshot snapshot() const override { return ink_->snapshot(); }
+  void restore(const InkSnapshot& snapshot) override { ink_->restore(snapshot); }
+  std::uint64_t hash() const override { return ink_->hash(); }
+
+ private:
+  std::unique_ptr<Ink> ink_;
+  int steps_left_;
+};
+
+TEST(LivePainting, EndsInOneLineWhereTheCardGivesOut) {
+  const ReplaySettings s = settings();
+  LivePainting live(Painting(s.painting, std::make_unique<FullCard>(open_ink(s.painting.ink).value(), 3)),
+                    s.reach, nullptr);
+  while (!live.failed()) std::this_thread::yield();
+  EXPECT_EQ(live.failed()->message, "the card is full");
+  live.act({{}, ReshapeBrush{}});
+  EXPECT_EQ(live.stop().step(), 3);
 }
 
 }  // namespace
