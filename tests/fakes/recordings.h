@@ -19,4 +19,4 @@ inline std::filesystem::path recordings() {
 // First line of a test that needs the recording `file`.
 #define REQUIRE_RECORDING(file)                              \
   if (!std::filesystem::exists(fude::recordings() / (file))) \
-  GTEST_SKIP() << "no " << (fude::recordings() / (file)) << "; set FUDE_RECORDINGS to the recordings"
+  GTEST_SKIP() << "skipped: no " << (fude::recordings() / (file)) << "; set FUDE_RECORDINGS to the recordings"
