@@ -38,9 +38,9 @@ void main() {
     Cell cell = cells[index];
     int pair = pair_at(cell.slot, cell.cell);
     vec4 surface_mass = texelFetch(surface_now, pair);
-    vec4 levels = texelFetch(surface_now, pair + CELLS);
+    vec4 levels = texelFetch(surface_now, pair + 1);
     float water = total(population_of(levels[rest_level], texelFetch(moving_now, pair),
-                                      texelFetch(moving_now, pair + CELLS)));
+                                      texelFetch(moving_now, pair + 1)));
     float surface = levels[surface_level];
     for (int i = cell.first; i < cell.first + cell.touches; ++i) {
       Touch t = touches[i];
@@ -51,6 +51,6 @@ void main() {
     }
     levels[surface_level] = surface;
     surface_next[pair] = surface_mass;
-    surface_next[pair + CELLS] = levels;
+    surface_next[pair + 1] = levels;
   }
 }

@@ -9,7 +9,7 @@
 #include "collide.k"
 #include "dry.k"
 #include "gl_tiles.inc"
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 layout(binding = 2) uniform samplerBuffer shown_now;
 layout(binding = 3) uniform samplerBuffer pigment_now;  // masses in the flow layer, fixed masses
 layout(binding = 4) uniform samplerBuffer paper;        // blocking, grain, toe
@@ -45,7 +45,7 @@ void look_around(int cell_x, int cell_y, int tile) {
 
 // What a neighbour shows, and its population in the direction of component `plane`.
 Site site_beside(int pair) {
-  return site_shown(Shown(texelFetch(shown_now, pair), texelFetch(shown_now, pair + CELLS)));
+  return site_shown(Shown(texelFetch(shown_now, pair), texelFetch(shown_now, pair + 1)));
 }
 
 // Opposite directions of a texel of populations are two components apart.
@@ -61,7 +61,7 @@ Crossing link(int side, int dx, int dy) {
   int y = side == side_e ? 0 : 1;
   int pair = from_here ? pair_beside(x, y) : pair_beside(dx, dy);
   Site other = site_beside(pair);
-  vec4 theirs = texelFetch(moving_now, straight ? pair : pair + CELLS);
+  vec4 theirs = texelFetch(moving_now, straight ? pair : pair + 1);
   vec4 ours = straight ? own_straight : own_diagonal;
   float own_head = straight ? own_site.head : own_site.diagonal_head;
   float other_head = straight ? other.head : other.diagonal_head;
@@ -81,11 +81,11 @@ void main() {
   int pair = around[4];
 
   own_straight = texelFetch(moving_now, pair);
-  own_diagonal = texelFetch(moving_now, pair + CELLS);
+  own_diagonal = texelFetch(moving_now, pair + 1);
   vec4 surface_mass = texelFetch(surface_now, pair);
-  vec4 levels = texelFetch(surface_now, pair + CELLS);
+  vec4 levels = texelFetch(surface_now, pair + 1);
   vec4 mass = texelFetch(pigment_now, pair);
-  vec4 fixed_mass = texelFetch(pigment_now, pair + CELLS);
+  vec4 fixed_mass = texelFetch(pigment_now, pair + 1);
   vec4 textures = texelFetch(paper, own_slot * CELLS + cell);
   Population before = population_of(levels[rest_level], own_straight, own_diagonal);
   own_site = site_beside(pair);
@@ -101,11 +101,11 @@ void main() {
   precise float fixed_ink = (fixed_mass.x + fixed_mass.y) + (fixed_mass.z + fixed_mass.w);
   Shown seen = shown(site_of(numbers, total(after), mass, fixed_ink, textures.x, textures.y, textures.z));
   moving_next[pair] = vec4(after.e, after.n, after.w, after.s);
-  moving_next[pair + CELLS] = vec4(after.ne, after.nw, after.sw, after.se);
+  moving_next[pair + 1] = vec4(after.ne, after.nw, after.sw, after.se);
   shown_next[pair] = seen.concentration;
-  shown_next[pair + CELLS] = seen.front;
+  shown_next[pair + 1] = seen.front;
   surface_next[pair] = surface_mass;
-  surface_next[pair + CELLS] = vec4(surface, after.rest, evaporated, water + surface);
+  surface_next[pair + 1] = vec4(surface, after.rest, evaporated, water + surface);
   pigment_next[pair] = mass;
-  pigment_next[pair + CELLS] = fixed_mass;
+  pigment_next[pair + 1] = fixed_mass;
 }

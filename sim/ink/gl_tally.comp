@@ -20,11 +20,11 @@ void main() {
   if (index < count) {
     int x = index & (SIDE - 1);
     int slot = texelFetch(neighbours, 3 * (index / SIDE) + 1).y;
-    int at = pair_at(slot, x) + CELLS;
+    int at = pair_at(slot, x) + 1;
     double evaporated = columns[slot * SIDE + x].evaporated;
     uint wet = 0u;
     for (int y = 0; y < SIDE; ++y) {
-      vec4 levels = texelFetch(surface_now, at + y * SIDE);
+      vec4 levels = texelFetch(surface_now, at + 2 * y * SIDE);
       evaporated += double(levels[evaporated_level]);
       uint bits = (y < MARGIN ? 1u : 0u) | (y >= SIDE - MARGIN ? 2u : 0u) | 4u;
       wet |= levels[wet_level] > 0.0 ? bits : 0u;

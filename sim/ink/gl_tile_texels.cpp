@@ -14,7 +14,8 @@ namespace {
 #include "sim/ink/kernels/shown.k"
 // clang-format on
 
-constexpr std::size_t second = floats_a_texel * tile::cells;  // where a group's second texels begin
+constexpr std::size_t second = floats_a_texel;  // of a pair
+constexpr std::size_t pair_stride = 2 * floats_a_texel;
 
 // Where the texels keep the planes.
 using Place = std::pair<std::size_t, std::size_t>;  // plane, float of the first cell
@@ -53,10 +54,11 @@ void visit_cells(const Visit& visit) {
 }
 
 template <std::size_t n>
-void take(const PlaneView& planes, const std::array<Place, n>& places, std::vector<float>& texels) {
+void take(const PlaneView& planes, const std::array<Place, n>& places, std::size_t stride,
+          std::vector<float>& texels) {
   for (const auto& [plane, first] : places)
     visit_cells([&, p = plane, at = first](int x, int y, std::size_t cell) {
-      texels[at + floats_a_texel * cell] = planes.cells(p, y)[x];
+      texels[at + stride * cell] = planes.cells(p, y)[x];
     });
 }
 
@@ -64,7 +66,7 @@ template <std::size_t n>
 void give(std::span<const float> texels, const std::array<Place, n>& places, const PlaneView& planes) {
   for (const auto& [plane, first] : places)
     visit_cells([&, p = plane, at = first](int x, int y, std::size_t cell) {
-      planes.cells(p, y)[x] = texels[at + floats_a_texel * cell];
+      planes.cells(p, y)[x] = texels[at + pair_stride * cell];
     });
 }
 
@@ -85,14 +87,14 @@ void put(const vec4& v, float* to) {
 TileTexels texels_of(const LatticeNumbers& numbers, const PlaneView& planes) {
   const std::vector<float> pair(pair_floats);
   TileTexels t{pair, pair, pair, pair, std::vector<float>(paper_floats)};
-  take(planes, moving_places, t.moving);
-  take(planes, surface_places, t.surface);
-  take(planes, pigment_places, t.pigment);
-  take(planes, paper_places, t.paper);
-  for (std::size_t at = 0; at < second; at += floats_a_texel) {
+  take(planes, moving_places, pair_stride, t.moving);
+  take(planes, surface_places, pair_stride, t.surface);
+  take(planes, pigment_places, pair_stride, t.pigment);
+  take(planes, paper_places, floats_a_texel, t.paper);
+  for (std::size_t at = 0; at < pair_floats; at += pair_stride) {
     const float* straight = &t.moving[at];
     const float* diagonal = &t.moving[second + at];
-    const float* paper = &t.paper[at];
+    const float* paper = &t.paper[at / 2];
     const Population f = {t.surface[second + at + 1],
                           straight[0],
                           straight[1],
@@ -117,7 +119,14 @@ void fill_planes(std::span<const float> moving, std::span<const float> surface,
   give(pigment, pigment_places, planes);
   for (std::size_t cell = 0; cell < tile::cells; ++cell)
     planes.cells(tile::fixed_ink, static_cast<int>(cell) / tile::side)[cell % tile::side] =
-        fixed_ink(&pigment[second + floats_a_texel * cell]);
+        fixed_ink(&pigment[second + pair_stride * cell]);
+}
+
+std::vector<float> fixed_masses(std::span<const float> pigment) {
+  std::vector<float> masses(floats_a_texel * tile::cells);
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    masses[i] = pigment[i % tile::cells * pair_stride + second + i / tile::cells];
+  return masses;
 }
 
 }  // namespace fude

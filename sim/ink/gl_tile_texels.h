@@ -9,8 +9,7 @@
 
 namespace fude {
 
-// The texels of one tile, each group as it lies in its buffer: for every cell a first texel, then for every
-// cell a second; of the paper one.
+// The texels of one tile, each group as it lies in its buffer: two for every cell, one of the paper.
 struct TileTexels {
   std::vector<float> moving;
   std::vector<float> surface;
@@ -29,5 +28,8 @@ TileTexels texels_of(const LatticeNumbers& numbers, const PlaneView& planes);
 // Fills the flowing and the still planes. Each span: pair_floats.
 void fill_planes(std::span<const float> moving, std::span<const float> surface,
                  std::span<const float> pigment, const PlaneView& planes);
+
+// The fixed masses in a tile's pigment texels, plane by plane.
+std::vector<float> fixed_masses(std::span<const float> pigment);
 
 }  // namespace fude

@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t pair_bytes = pair_floats * sizeof(float);
 constexpr std::size_t paper_bytes = paper_floats * sizeof(float);
 constexpr std::size_t first_slots = 64;
+constexpr std::uint32_t step_group = 256;  // invocations, as gl_step.comp has it
 constexpr int outside = 0;  // the slot that stands for what is off the sheet or asleep: dry and closed
 
 // A report of the water is heard so many steps after it was sent, and only one is under way; so a front is
@@ -186,7 +187,7 @@ void GlTiles::step(const GlInkPrograms& programs) {
   column_sums_.bind_storage(7);
   if (!awake_.empty()) {
     const auto count = static_cast<std::uint32_t>(awake_.size());
-    programs.step.run(tile::cells / 64, count);
+    programs.step.run(tile::cells / step_group, count);
     programs.tally.set("count", static_cast<int>(count) * tile::side);
     programs.tally.run((count * tile::side + 63) / 64);
   }
@@ -252,17 +253,16 @@ void GlTiles::sleep_where_none_can_come() {
 }
 
 void GlTiles::fall_asleep(TilePlace place, int slot) {
-  sleepers_[place] = require(
-      GlReadBack::begin(pigment_.buffer(), offset(slot, pair_bytes) + pair_bytes / 2, pair_bytes / 2));
+  sleepers_[place] = require(GlReadBack::begin(pigment_.buffer(), offset(slot, pair_bytes), pair_bytes));
   free_.push_back(slot);
 }
 
 void GlTiles::collect_sleepers() {
   for (const auto& [place, back] : sleepers_) {
     const std::vector<std::byte> bytes = back.collect();
-    FixedPigment pigment(4 * tile::cells);
-    for (std::size_t i = 0; i < pigment.size(); ++i)
-      std::memcpy(&pigment[i % 4 * tile::cells + i / 4], &bytes[i * sizeof(float)], sizeof(float));
+    std::vector<float> texels(pair_floats);
+    std::memcpy(texels.data(), bytes.data(), bytes.size());
+    FixedPigment pigment = fixed_masses(texels);
     if (std::ranges::any_of(pigment, [](float m) { return m != 0; })) asleep_[place] = std::move(pigment);
   }
   sleepers_.clear();
