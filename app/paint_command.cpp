@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/painting_options.h"
+#include "app/progress_line.h"
 #include "app/studio/studio.h"
 
 namespace fude {
@@ -13,7 +14,7 @@ namespace {
 
 struct Options {
   PaintingOptions painting;
-  std::string session, script, out, picture;
+  std::string session, on, script, out, picture;
   bool force = false;
 };
 
@@ -32,9 +33,30 @@ Result<void> run(const Options& options) {
     if (!session) return tl::unexpected(session.error());
     setup.played = std::move(*session);
   }
-  auto settings = options.painting.settings(setup.played ? setup.played->settings : RecordedSettings{});
+  std::optional<Session> before;
+  if (!options.on.empty()) {
+    auto session = read_session(options.on);
+    if (!session) return tl::unexpected(session.error());
+    before = std::move(*session);
+  }
+  RecordedSettings recorded;
+  if (before) recorded = before->settings;
+  if (setup.played) recorded = setup.played->settings;
+  auto settings = options.painting.settings(recorded);
   if (!settings) return tl::unexpected(settings.error());
   setup.settings = std::move(*settings);
+  if (before) {
+    const ProgressLine line("painting what was there");
+    auto sheet = painted_sheet(*before, setup.settings, [&](double share) { line.show(share); });
+    if (!sheet) return tl::unexpected(sheet.error());
+    setup.settings.wish.sheet =
+        Extent{Millimetres(sheet->columns * sheet->cell_mm), Millimetres(sheet->rows * sheet->cell_mm)};
+    setup.sheet = std::move(*sheet);
+  } else if (setup.played && setup.played->sheet) {
+    auto sheet = sheet_from_bytes(setup.played->sheet->state);
+    if (!sheet) return tl::unexpected(sheet.error());
+    setup.sheet = std::move(*sheet);
+  }
   if (!options.script.empty()) {
     auto script = load_script(options.script);
     if (!script) return tl::unexpected(script.error());
@@ -54,6 +76,7 @@ void add_paint(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("paint", "the studio: a window to paint in, or to watch a session in");
   command->add_option("SESSION", options->session, "a .fude session to play");
+  command->add_option("--on", options->on, "paint on the sheet as this session left it (.fude)");
   command->add_option("--script", options->script, "events to inject, as app/studio/script.h tells");
   command->add_option("--out", options->out, "record the painting as a session (.fude)");
   command->add_option("--picture", options->picture, "the sheet when the window closes (.png)");

@@ -2,6 +2,7 @@
 // was applied. The file is described in docs/session-format.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -62,6 +63,12 @@ struct RecordedCalibration {
   std::string toml;
 };
 
+// The sheet that a painting began on; its bytes are the rig's (docs/session-format.md).
+struct RecordedSheet {
+  Step step = 0;
+  std::vector<std::byte> state;
+};
+
 struct Session {
   std::vector<RecordedDevice> devices;
   std::vector<RecordedTransfer> transfers;
@@ -70,7 +77,8 @@ struct Session {
   std::vector<Receipt> receipts;
   std::vector<RecordedCalibration> calibrations;
   std::map<std::string, std::string>
-      settings;           // brush, paper, sheet size … as they were when recording began
+      settings;  // brush, paper, sheet size … as they were when recording began
+  std::optional<RecordedSheet> sheet;
   bool complete = false;  // closed in good order
 };
 

@@ -203,6 +203,11 @@ Result<void> read_remarks(Database& db, Session& session) {
     return {};
   });
   if (!r) return r;
+  r = each(db, "SELECT * FROM snapshot ORDER BY step LIMIT 1", [&](const Statement& s) -> Result<void> {
+    session.sheet = RecordedSheet{s.integer(0), s.blob(1)};
+    return {};
+  });
+  if (!r) return r;
   return each(db, "SELECT value FROM meta WHERE key='complete'", [&](const Statement& s) -> Result<void> {
     session.complete = s.text(0) == "yes";
     return {};

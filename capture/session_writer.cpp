@@ -40,6 +40,7 @@ Result<SessionWriter> SessionWriter::create(const std::filesystem::path& path) {
 
   const char* texts[] = {
       "INSERT OR REPLACE INTO setting VALUES(?,?)",
+      "INSERT OR REPLACE INTO snapshot VALUES(?,?)",
       "INSERT INTO calibration(name,toml) VALUES(?,?)",
       "INSERT INTO device VALUES(NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
       "INSERT OR REPLACE INTO axis VALUES(?,?,?,?,?,?,?,?)",
@@ -57,7 +58,8 @@ Result<SessionWriter> SessionWriter::create(const std::filesystem::path& path) {
   }
   Statements statements{std::move(prepared[0]), std::move(prepared[1]), std::move(prepared[2]),
                         std::move(prepared[3]), std::move(prepared[4]), std::move(prepared[5]),
-                        std::move(prepared[6]), std::move(prepared[7]), std::move(prepared[8])};
+                        std::move(prepared[6]), std::move(prepared[7]), std::move(prepared[8]),
+                        std::move(prepared[9])};
   return SessionWriter(std::move(*db), std::move(statements));
 }
 
@@ -72,6 +74,10 @@ Result<void> SessionWriter::write(Statement& statement) {
 
 Result<void> SessionWriter::set(const std::string& key, const std::string& value) {
   return write(to_.setting.bind(key).bind(value));
+}
+
+Result<void> SessionWriter::set_sheet(const RecordedSheet& sheet) {
+  return write(to_.sheet.bind(sheet.step).bind(std::span<const std::byte>(sheet.state)));
 }
 
 Result<void> SessionWriter::add_calibration(const RecordedCalibration& calibration) {

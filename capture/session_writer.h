@@ -20,6 +20,7 @@ class SessionWriter {
   static Result<SessionWriter> create(const std::filesystem::path& path);
 
   Result<void> set(const std::string& key, const std::string& value);
+  Result<void> set_sheet(const RecordedSheet& sheet);
   Result<void> add_calibration(const RecordedCalibration& calibration);
   Result<DeviceNumber> add_device(const DeviceDescription& description);
   Result<void> add_transfer(DeviceNumber device, const Transfer& transfer);
@@ -38,7 +39,7 @@ class SessionWriter {
 
  private:
   struct Statements {
-    Statement setting, calibration, device, axis, transfer, pen, action, applied, receipt;
+    Statement setting, sheet, calibration, device, axis, transfer, pen, action, applied, receipt;
   };
   SessionWriter(Database db, Statements statements) : db_(std::move(db)), to_(std::move(statements)) {}
   Result<void> write(Statement& statement);

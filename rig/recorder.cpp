@@ -21,6 +21,7 @@ class Recorder::Writing {
   Result<void> operator()(const RecordedTransfer& t) { return out_.add_transfer(t.device, t.transfer); }
   Result<void> operator()(const Receipt& r) { return out_.add_receipt(r); }
   Result<void> operator()(const RecordedCalibration& c) { return out_.add_calibration(c); }
+  Result<void> operator()(const RecordedSheet& s) { return out_.set_sheet(s); }
   Result<void> operator()(const RecordedPen& p) {
     return with_step(out_.add_pen(p.device, p.sample), p.applied);
   }

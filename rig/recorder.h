@@ -23,7 +23,7 @@ struct SessionSetting {
   std::string value;
 };
 using SessionRecord = std::variant<SessionSetting, DeviceDescription, RecordedTransfer, RecordedPen,
-                                   RecordedAction, Receipt, RecordedCalibration>;
+                                   RecordedAction, Receipt, RecordedCalibration, RecordedSheet>;
 
 class Recorder {
  public:

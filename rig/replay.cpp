@@ -99,8 +99,11 @@ Picture picture_of(const Ink& ink, const Palette& palette) {
   return picture;
 }
 
-Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
-                        const std::function<void(double)>& progress) try {
+namespace {
+
+// Paints the session's inputs on the sheet it began on.
+Result<History> paint_again(const Session& session, const ReplaySettings& settings,
+                            const std::function<void(double)>& progress, Stopwatch& stopwatch) {
   auto plan = plan_sheet(session, settings.wish);
   if (!plan) return tl::unexpected(plan.error());
   PaintingSetup setup = settings.painting;
@@ -108,15 +111,16 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
   setup.ink.height_mm = plan->sheet.height.value;
   auto painting = Painting::open(setup);
   if (!painting) return tl::unexpected(painting.error());
+  if (session.sheet) {
+    const auto sheet = sheet_from_bytes(session.sheet->state);
+    if (!sheet) return tl::unexpected(sheet.error());
+    if (auto laid = lay_sheet(*sheet, painting->ink()); !laid) return tl::unexpected(laid.error());
+  }
   History history(std::move(*painting), undoes(session) ? snapshots_kept : 0);
 
-  const auto start = WallClock::now();
-  auto told = start;
-  Replayed result;
-  ReplayReport& report = result.report;
-  report.dt_s = history.painting().step_s();
-  const std::vector<TimedInput> inputs = inputs_of(session, *plan, settings.reach, report.dt_s);
-  Stopwatch stopwatch;
+  auto told = WallClock::now();
+  const double step_s = history.painting().step_s();
+  const std::vector<TimedInput> inputs = inputs_of(session, *plan, settings.reach, step_s);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     stopwatch.advance(history, inputs[i].step);
     stopwatch.apply(history, inputs[i].input);
@@ -126,33 +130,59 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
     }
   }
   const double settle_s = settings.settle.until_dry ? longest_settling_s : settings.settle.seconds;
-  const Step end = history.step() + 1 + static_cast<Step>(std::ceil(settle_s / report.dt_s));
+  const Step end = history.step() + 1 + static_cast<Step>(std::ceil(settle_s / step_s));
   while (history.step() < end) {
     stopwatch.advance(history, history.step() + 1);
     if (settings.settle.until_dry && history.painting().ink().still()) break;
   }
   progress(1);
+  return history;
+}
 
-  const Ink& ink = history.painting().ink();
+Error too_little_memory() {
+  return {Fault::storage, "not enough memory for this sheet; give a smaller --size-mm or a larger --cell-mm"};
+}
+
+}  // namespace
+
+Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
+                        const std::function<void(double)>& progress) try {
+  const auto start = WallClock::now();
+  Stopwatch stopwatch;
+  auto history = paint_again(session, settings, progress, stopwatch);
+  if (!history) return tl::unexpected(history.error());
+  const Ink& ink = history->painting().ink();
+  const InkSetup& setup = settings.painting.ink;
+  Replayed result;
+  ReplayReport& report = result.report;
   report.wall_s = since(start);
-  report.steps = history.step();
+  report.dt_s = history->painting().step_s();
+  report.steps = history->step();
   count_samples(session, report);
   report.step_ms = quantiles(std::move(stopwatch.step_ms));
   report.us_per_solve = quantiles(std::move(stopwatch.solve_us));
-  report.solves = history.painting().solves();
+  report.solves = history->painting().solves();
   report.ink = ink.totals();
-  report.backend = setup.ink.backend == InkBackend::gl ? "gl" : "cpu";
-  report.isa =
-      setup.ink.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.ink.instruction_set));
-  report.threads = setup.ink.threads;
+  report.backend = setup.backend == InkBackend::gl ? "gl" : "cpu";
+  report.isa = setup.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.instruction_set));
+  report.threads = setup.threads;
   for (const Pigment& pigment : settings.palette.pigments) report.pigments.emplace_back(pigment.name);
   result.picture = picture_of(ink, settings.palette);
   report.picture_sha256 = picture_sha256(result.picture);
   report.peak_mb = peak_megabytes();
   return result;
 } catch (const std::bad_alloc&) {
-  return failure(Fault::storage,
-                 "not enough memory for this sheet; give a smaller --size-mm or a larger --cell-mm");
+  return tl::unexpected(too_little_memory());
+}
+
+Result<SheetSnapshot> painted_sheet(const Session& session, const ReplaySettings& settings,
+                                    const std::function<void(double)>& progress) try {
+  Stopwatch stopwatch;
+  const auto history = paint_again(session, settings, progress, stopwatch);
+  if (!history) return tl::unexpected(history.error());
+  return sheet_of(history->painting().ink());
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(too_little_memory());
 }
 
 }  // namespace fude

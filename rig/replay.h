@@ -12,6 +12,7 @@
 #include "capture/session.h"
 #include "rig/painting.h"
 #include "rig/sheet_plan.h"
+#include "rig/sheet_snapshot.h"
 #include "signal/result.h"
 #include "sim/optics/colour.h"
 #include "sim/optics/picture.h"
@@ -71,6 +72,10 @@ struct Replayed {
 // Errors: those of the plan and of the ink's back-end; storage where memory does not suffice.
 Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
                         const std::function<void(double)>& progress);
+
+// The sheet as a session leaves it, to paint on. Errors: those of replay().
+Result<SheetSnapshot> painted_sheet(const Session& session, const ReplaySettings& settings,
+                                    const std::function<void(double)>& progress);
 
 // The whole sheet as a picture: one pixel a cell.
 Picture picture_of(const Ink& ink, const Palette& palette);

@@ -332,6 +332,8 @@ Result<void> run_studio(const StudioSetup& setup) {
   painting_setup.ink.height_mm = plan->sheet.height.value;
   auto painting = Painting::open(painting_setup);
   if (!painting) return tl::unexpected(painting.error());
+  if (setup.sheet)
+    if (auto laid = lay_sheet(*setup.sheet, painting->ink()); !laid) return laid;
   std::unique_ptr<Recorder> recorder;
   if (!setup.out.empty()) {
     auto opened = Recorder::open(setup.out);
@@ -339,6 +341,7 @@ Result<void> run_studio(const StudioSetup& setup) {
     recorder = std::move(*opened);
     for (const auto& [key, value] : setup.settings.to_record) recorder->add(SessionSetting{key, value});
     recorder->add(SessionSetting{"sheet_mm", as_text(plan->sheet)});
+    if (setup.sheet) recorder->add(RecordedSheet{0, as_bytes(*setup.sheet)});
   }
   Studio studio(setup, *plan, std::move(*painting), recorder.get());
   if (auto done = studio.run(); !done) return done;

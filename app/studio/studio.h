@@ -15,9 +15,10 @@ namespace fude {
 
 struct StudioSetup {
   ReplaySettings settings;
-  std::optional<Session> played;      // is played as if its hand were here
-  std::vector<ScriptedEvent> script;  // injected; the window closes at its end only by `quit`
-  std::filesystem::path out;          // the session to record; empty: none
+  std::optional<Session> played;       // is played as if its hand were here
+  std::optional<SheetSnapshot> sheet;  // what is painted on; none: dry white paper
+  std::vector<ScriptedEvent> script;   // injected; the window closes at its end only by `quit`
+  std::filesystem::path out;           // the session to record; empty: none
   std::filesystem::path picture;  // the sheet at the end, as a replay of the session paints it; empty: none
   bool overwrite = false;
 };

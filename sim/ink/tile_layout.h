@@ -97,7 +97,8 @@ struct PlaneView {
       : flowing(first_flowing), other(first_other), row(row_stride), plane(plane_stride) {}
   // Planes all one after the other.
   [[gnu::always_inline]] PlaneView(float* first, std::ptrdiff_t row_stride, std::ptrdiff_t plane_stride)
-      : PlaneView(first, first + tile::flowing_planes * plane_stride, row_stride, plane_stride) {}
+      : PlaneView(first, first + static_cast<std::ptrdiff_t>(tile::flowing_planes) * plane_stride, row_stride,
+                  plane_stride) {}
 
   [[gnu::always_inline]] float* cells(std::size_t index, int y) const {
     const bool flows = index < tile::flowing_planes;
