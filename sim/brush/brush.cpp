@@ -59,17 +59,12 @@ void Brush::away(double elapsed_s) {
   state_.footprint = {};
 }
 
-TuftSurface Brush::surface_at_footprint() const {
-  const Footprint& f = state_.footprint;
-  return swollen(surface_of(tuft_, f.x, f.paper_from_handle), f.soak_mm);
+// The tuft with the ink that clings to it, as its last footprint shows it.
+TuftSurface Brush::marked_surface() const {
+  return swollen(surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle), state_.footprint.soak_mm);
 }
 
-TimedSurface Brush::take_footprint() {
-  const double since_s = state_.footprint.since_s;
-  state_.footprint = {true, state_.tuft.x, state_.tuft.paper_from_handle,
-                      tuft_.spec.soak_mm * wetness(state_.loading), 0};
-  return {surface_at_footprint(), since_s};
-}
+void Brush::take_footprint() { state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading)}; }
 
 BrushFrame Brush::move(const BrushInput& input) {
   BrushFrame frame;
@@ -87,8 +82,7 @@ BrushFrame Brush::move(const BrushInput& input) {
   target.rotation.normalize();
   target = reachable_pose(tuft_, target);
   const Pose<Paper, Handle> start = state_.tuft.paper_from_handle;
-  Footprint& footprint = state_.footprint;
-  const bool jumped = input.after_gap || elapsed_s > gap_s || !footprint.taken ||
+  const bool jumped = input.after_gap || elapsed_s > gap_s || !state_.footprint.taken ||
                       (target.translation - start.translation).norm() > jump_mm;
   if (jumped) sweep_.come_from_nowhere();
   frame.steps = jumped ? 1
@@ -100,9 +94,8 @@ BrushFrame Brush::move(const BrushInput& input) {
     const Pose<Paper, Handle> pose =
         jumped ? target : between(start, target, static_cast<double>(k) / frame.steps);
     take_worse(frame.solve, advance(tuft_, state_.tuft, pose, step_s, jumped));
-    footprint.since_s += step_s;
-    if (!jumped && footprint.since_s < tuft_.spec.footprint_step_s - 1e-6) continue;
-    after.push_back(take_footprint());
+    take_footprint();
+    after.push_back({marked_surface(), step_s});
   }
 
   std::vector<InkLoad> loads = offered(state_.loading);
@@ -128,7 +121,7 @@ void Brush::restore(const BrushState& state) {
   if (state.tuft.x.size() != state_.tuft.x.size()) throw std::invalid_argument("the state of another tuft");
   state_ = state;
   if (state_.footprint.taken)
-    sweep_.come_from(surface_at_footprint());
+    sweep_.come_from(marked_surface());
   else
     sweep_.come_from_nowhere();
 }

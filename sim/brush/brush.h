@@ -24,13 +24,10 @@
 
 namespace fude {
 
-// The tuft as its last footprint was taken: where the next is swept from.
+// The footprint that the next is swept from: of the tuft as it stands.
 struct Footprint {
   bool taken = false;
-  Variables x;
-  Pose<Paper, Handle> paper_from_handle;
-  double soak_mm = 0;  // by which it was swollen
-  double since_s = 0;  // time solved since then
+  double soak_mm = 0;  // by which the tuft was swollen
 };
 
 // All that a brush remembers; copying it is a snapshot.
@@ -48,8 +45,7 @@ std::vector<std::byte> bytes_of(const BrushState& state);
 Result<BrushState> brush_state_of(std::span<const std::byte> bytes);
 
 // What one call of move did. A long frame is solved in several steps: iterations, residual and
-// violation are those of the worst step, energy that of the last. Footprints are taken no closer than
-// `footprint_step_s`, so a quick frame may leave its mark with the next.
+// violation are those of the worst step, energy that of the last.
 struct BrushFrame {
   int steps = 0;
   SolveReport solve;
@@ -89,8 +85,8 @@ class Brush {
 
  private:
   void away(double elapsed_s);
-  TuftSurface surface_at_footprint() const;
-  TimedSurface take_footprint();
+  TuftSurface marked_surface() const;
+  void take_footprint();
 
   Tuft tuft_;
   HairTexture texture_;

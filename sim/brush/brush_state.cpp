@@ -8,7 +8,7 @@
 namespace fude {
 namespace {
 
-constexpr std::uint64_t signature = 0x3130687375726266ULL;  // "fbrush01"
+constexpr std::uint64_t signature = 0x3230687375726266ULL;  // "fbrush02"
 
 class Writer {
  public:
@@ -116,10 +116,7 @@ void walk(Archive& archive, State& state) {
   }
   archive(state.loading.endless);
   archive(state.footprint.taken);
-  archive.dynamic(state.footprint.x);
-  pose(archive, state.footprint.paper_from_handle);
   archive(state.footprint.soak_mm);
-  archive(state.footprint.since_s);
   archive(state.timed);
 }
 

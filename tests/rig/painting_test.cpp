@@ -55,11 +55,17 @@ TEST(Replay, ThreadsDoNotChangeThePicture) {
 }
 
 TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {
-  const double slow = total_deposit(painted(gesture::session(100, 1), settings()));
-  const double middle = total_deposit(painted(gesture::session(250, 1), settings()));
-  const double fast = total_deposit(painted(gesture::session(1000, 1), settings()));
-  EXPECT_NEAR(slow, fast, 0.02 * fast);
-  EXPECT_NEAR(middle, fast, 0.02 * fast);
+  ReplaySettings round_goat = settings();
+  ReplaySettings standard = settings();
+  standard.painting.brush = BrushSpec{};
+  standard.reach = reach_of(BrushSpec{});
+  for (const ReplaySettings& s : {round_goat, standard}) {
+    const double slow = total_deposit(painted(gesture::session(100, 1), s));
+    const double middle = total_deposit(painted(gesture::session(250, 1), s));
+    const double fast = total_deposit(painted(gesture::session(1000, 1), s));
+    EXPECT_NEAR(slow, fast, 0.02 * fast);
+    EXPECT_NEAR(middle, fast, 0.02 * fast);
+  }
 }
 
 TEST(Replay, PressureWithoutContactPaintsNothing) {
