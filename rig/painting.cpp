@@ -27,6 +27,7 @@ Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink) : ink_(
   for (Brush& brush : brushes_) {
     brush.load(load.wetness, load.strength);
     brush.set_endless(setup.endless);
+    brush.expect_film(setup.ink.paper.film);
     load.strength = {};
   }
   exchange_delay_ = static_cast<Step>(std::ceil(exchange_delay_s / ink_->step_s() - 1e-9));

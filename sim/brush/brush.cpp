@@ -11,6 +11,7 @@ constexpr double out_of_reach_mm = 1e4;  // height at which nothing touches
 constexpr double gap_s = 0.25;           // a longer silence is a new stroke
 constexpr double jump_mm = 60;           // in one frame: no hand moves like that
 constexpr int most_steps = 16;
+constexpr double longest_flow_s = 10;  // after it a tuft is as even as it gets
 
 bool finite(const Pose<Paper, Handle>& pose) {
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite() &&
@@ -57,6 +58,7 @@ void Brush::away(double elapsed_s) {
   pose.translation.z() = out_of_reach_mm;
   advance(tuft_, state_.tuft, pose, elapsed_s, true);
   state_.footprint = {};
+  even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, longest_flow_s));
 }
 
 // The tuft with the ink that clings to it, as its last footprint shows it.
@@ -72,7 +74,6 @@ BrushFrame Brush::move(const BrushInput& input) {
   const double elapsed_s = first ? 0 : seconds_since(state_.last, input.time.host);
   state_.last = first ? input.time.host : std::max(state_.last, input.time.host);
   state_.timed = true;
-  even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, 10.0));
   if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) {
     away(elapsed_s);
     return frame;
@@ -98,13 +99,34 @@ BrushFrame Brush::move(const BrushInput& input) {
     after.push_back({marked_surface(), step_s});
   }
 
-  std::vector<InkLoad> loads = offered(state_.loading);
-  std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, texture_, loads);
-  if (map) frame.deposit = Deposit{std::move(*map), std::move(loads)};
+  std::optional<FootprintMap> map =
+      sweep_.sweep(after, tuft_.spec.cell_mm, texture_, offered(state_.loading));
+  if (!map) {
+    even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, longest_flow_s));
+    return frame;
+  }
+  std::vector<InkLoad> loads = draw_for(*map, elapsed_s);
+  frame.deposit = Deposit{std::move(*map), std::move(loads)};
   return frame;
 }
 
+std::vector<InkLoad> Brush::draw_for(const FootprintMap& map, double elapsed_s) {
+  const double rate = tuft_.spec.moisture_flow_per_s;
+  const double step_s = std::min(elapsed_s, longest_flow_s);
+  if (film_ul_mm2_ == 0) {
+    even_out(state_.loading, rate, step_s);
+    return offered(state_.loading);
+  }
+  PerPatch demand_ul{};
+  for (std::size_t i = 0; i < map.fresh.size(); ++i)
+    demand_ul[map.patch[i]] += static_cast<double>(map.fresh[i]);
+  for (double& demand : demand_ul) demand *= film_ul_mm2_ * map.cell_mm * map.cell_mm;
+  return draw(state_.loading, rate, step_s, demand_ul);
+}
+
 void Brush::take(const Exchange& exchange) { book(state_.loading, exchange); }
+
+void Brush::expect_film(double ul_per_mm2) { film_ul_mm2_ = ul_per_mm2; }
 
 void Brush::load(float wetness, const Concentrations& strength) {
   fill(state_.loading, static_cast<double>(wetness), strength);

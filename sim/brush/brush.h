@@ -68,8 +68,13 @@ class Brush {
   // and marks nothing. Time that stands still or runs backwards counts as no time.
   BrushFrame move(const BrushInput& input);
 
-  // What the paper took, net of what it gave back; the rig calls it a fixed simulated time later.
+  // What the paper took in the oldest deposit not yet answered, net of what it gave back; the rig calls it
+  // a fixed simulated time later.
   void take(const Exchange& exchange);
+
+  // What a full brush leaves on newly covered dry paper. From now on that much of every deposit is set aside
+  // until take says what it was. 0, as at first: nothing is.
+  void expect_film(double ul_per_mm2);
 
   // Dips: every patch to `wetness` of its capacity, with ink of this strength.
   void load(float wetness, const Concentrations& strength);
@@ -87,9 +92,11 @@ class Brush {
   void away(double elapsed_s);
   TuftSurface marked_surface() const;
   void take_footprint();
+  std::vector<InkLoad> draw_for(const FootprintMap& map, double elapsed_s);
 
   Tuft tuft_;
   HairTexture texture_;
+  double film_ul_mm2_ = 0;
   BrushState state_;
   FootprintSweep sweep_;  // follows state_.footprint
 };

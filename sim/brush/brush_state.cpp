@@ -21,6 +21,7 @@ class Writer {
     put(static_cast<std::uint64_t>(matrix.cols()));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
   }
+  void sequence(const auto& items) { put(items.size()); }
   bool sound = true;
   std::vector<std::byte> bytes;
 
@@ -58,6 +59,14 @@ class Reader {
     }
     matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
+  }
+  void sequence(auto& items) {
+    const std::uint64_t count = word();
+    if (count > left.size() / sizeof(items[0])) {  // no more memory than there are bytes
+      sound = false;
+      return;
+    }
+    items.resize(count);
   }
   bool sound = true;
   std::span<const std::byte> left;
@@ -115,6 +124,12 @@ void walk(Archive& archive, State& state) {
     for (auto& volume : patch.pigment_ul) archive(volume);
   }
   archive(state.loading.endless);
+  archive.sequence(state.loading.set_aside);
+  for (auto& withdrawal : state.loading.set_aside)
+    for (auto& patch : withdrawal) {
+      archive(patch.water_ul);
+      for (auto& volume : patch.pigment_ul) archive(volume);
+    }
   archive(state.footprint.taken);
   archive(state.footprint.soak_mm);
   archive(state.timed);

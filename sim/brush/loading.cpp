@@ -44,9 +44,11 @@ void hand_on(LoadedPatch& from, LoadedPatch& to, double flow) {
 }
 
 // Along the hair ink wicks as fast as the fullest part can feed it, however little the tip holds. One
-// implicit step of C dp/dt = G p'' for the fill p (Thomas' algorithm), so that it is stable at any G;
-// `conductance` is G times the step, µl per unit of fill.
-void wick(Loading& loading, int around, double conductance) {
+// implicit step of C dp/dt = G p'' - D p for the fill p (Thomas' algorithm), so that it is stable at any G
+// and D: `conductance` is G times the step and `demand_ul` D times the step, µl per unit of fill. Returns
+// the fill.
+std::array<double, patches_along> wick(Loading& loading, int around, double conductance,
+                                       const PerPatch& demand_ul) {
   std::array<double, patches_along> fill{};
   std::array<double, patches_along> ahead{};
   const auto at = [&](int i) -> LoadedPatch& { return loading.patches[patch_index(i, around)]; };
@@ -54,7 +56,8 @@ void wick(Loading& loading, int around, double conductance) {
     const auto k = static_cast<std::size_t>(i);
     const double before = i > 0 ? conductance : 0;
     const double after = i + 1 < patches_along ? conductance : 0;
-    const double pivot = at(i).capacity_ul + before + after - (i > 0 ? before * ahead[k - 1] : 0);
+    const double pivot = at(i).capacity_ul + demand_ul[patch_index(i, around)] + before + after -
+                         (i > 0 ? before * ahead[k - 1] : 0);
     ahead[k] = after / pivot;
     fill[k] = (at(i).water_ul + (i > 0 ? before * fill[k - 1] : 0)) / pivot;
   }
@@ -69,6 +72,54 @@ void wick(Loading& loading, int around, double conductance) {
     if (flow(i) > 0) hand_on(at(i), at(i + 1), flow(i));
   for (int i = patches_along - 2; i >= 0; --i)
     if (flow(i) < 0) hand_on(at(i + 1), at(i), -flow(i));
+  return fill;
+}
+
+Concentrations strength_of(const LoadedPatch& patch) {
+  Concentrations strength{};
+  for (std::size_t c = 0; c < concentrations_per_group; ++c)
+    strength[c] = static_cast<float>(std::max(0.0, patch.pigment_ul[c]) / patch.water_ul);
+  return strength;
+}
+
+// Takes `water_ul` out of the patch, and the pigment in it.
+PatchExchange withdrawn(LoadedPatch& patch, double water_ul) {
+  PatchExchange taken{water_ul, {}};
+  const double part = water_ul / patch.water_ul;
+  patch.water_ul -= water_ul;
+  for (std::size_t c = 0; c < concentrations_per_group; ++c) {
+    taken.pigment_ul[c] = part * patch.pigment_ul[c];
+    patch.pigment_ul[c] -= taken.pigment_ul[c];
+  }
+  return taken;
+}
+
+// Moves ink in the tuft for one step while the paper draws on it: what each patch offers, and what leaves.
+std::vector<InkLoad> flow(Loading& loading, double rate_per_s, double step_s, const PerPatch& demand_ul,
+                          Withdrawal& withdrawal) {
+  // Around, from neighbour to neighbour: a quarter of the difference at most, or they would swap.
+  const double share = 0.25 * (1 - elementary::exponential(-4 * rate_per_s * step_s));
+  for (int i = 0; i < patches_along; ++i)
+    for (int j = 0; j < patches_around; ++j)
+      exchange_between(loading.patches[patch_index(i, j)],
+                       loading.patches[patch_index(i, (j + 1) % patches_around)], share);
+  double capacity = 0;
+  for (const LoadedPatch& patch : loading.patches) capacity += patch.capacity_ul;
+  const double conductance = step_s * rate_per_s * capacity / patches_around;
+  std::vector<InkLoad> loads(patch_count);
+  for (int j = 0; j < patches_around; ++j) {
+    const auto fill = wick(loading, j, conductance, demand_ul);
+    for (int i = 0; i < patches_along; ++i) {
+      const std::size_t k = patch_index(i, j);
+      LoadedPatch& patch = loading.patches[k];
+      const double wetness = std::min(1.0, fill[static_cast<std::size_t>(i)]);
+      if (wetness <= 0 || patch.water_ul <= 0) continue;
+      loads[k] = {static_cast<float>(wetness), strength_of(patch)};
+      if (demand_ul[k] > 0)
+        withdrawal[k] = withdrawn(patch, std::min(demand_ul[k] * wetness, patch.water_ul));
+    }
+  }
+  return loads;
 }
 
 }  // namespace
@@ -114,34 +165,43 @@ std::vector<InkLoad> offered(const Loading& loading) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const LoadedPatch& patch = loading.patches[i];
     if (patch.water_ul <= 0) continue;
-    loads[i].wetness = static_cast<float>(std::min(1.0, patch.water_ul / patch.capacity_ul));
-    for (std::size_t c = 0; c < concentrations_per_group; ++c)
-      loads[i].strength[c] = static_cast<float>(std::max(0.0, patch.pigment_ul[c]) / patch.water_ul);
+    loads[i] = {static_cast<float>(std::min(1.0, patch.water_ul / patch.capacity_ul)), strength_of(patch)};
   }
   return loads;
+}
+
+std::vector<InkLoad> draw(Loading& loading, double rate_per_s, double step_s, const PerPatch& demand_ul) {
+  Withdrawal withdrawal{};
+  std::vector<InkLoad> loads =
+      flow(loading, rate_per_s, step_s, loading.endless ? PerPatch{} : demand_ul, withdrawal);
+  loading.set_aside.push_back(withdrawal);
+  return loads;
+}
+
+void even_out(Loading& loading, double rate_per_s, double step_s) {
+  Withdrawal none{};
+  flow(loading, rate_per_s, step_s, {}, none);
 }
 
 void book(Loading& loading, const Exchange& exchange) {
   if (exchange.patches.size() > patch_count)
     throw std::invalid_argument("an exchange with more patches than the tuft");
+  Withdrawal booked{};
+  if (!loading.set_aside.empty()) {
+    booked = loading.set_aside.front();
+    loading.set_aside.pop_front();
+  }
   if (loading.endless) return;
   for (std::size_t i = 0; i < exchange.patches.size(); ++i) {
-    loading.patches[i].water_ul -= exchange.patches[i].water_ul;
+    booked[i].water_ul -= exchange.patches[i].water_ul;
     for (std::size_t c = 0; c < concentrations_per_group; ++c)
-      loading.patches[i].pigment_ul[c] -= exchange.patches[i].pigment_ul[c];
+      booked[i].pigment_ul[c] -= exchange.patches[i].pigment_ul[c];
   }
-}
-
-void even_out(Loading& loading, double rate_per_s, double step_s) {
-  // Around, from neighbour to neighbour: a quarter of the difference at most, or they would swap.
-  const double share = 0.25 * (1 - elementary::exponential(-4 * rate_per_s * step_s));
-  for (int i = 0; i < patches_along; ++i)
-    for (int j = 0; j < patches_around; ++j)
-      exchange_between(loading.patches[patch_index(i, j)],
-                       loading.patches[patch_index(i, (j + 1) % patches_around)], share);
-  double capacity = 0;
-  for (const LoadedPatch& patch : loading.patches) capacity += patch.capacity_ul;
-  for (int j = 0; j < patches_around; ++j) wick(loading, j, step_s * rate_per_s * capacity / patches_around);
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    loading.patches[i].water_ul += booked[i].water_ul;
+    for (std::size_t c = 0; c < concentrations_per_group; ++c)
+      loading.patches[i].pigment_ul[c] += booked[i].pigment_ul[c];
+  }
 }
 
 }  // namespace fude

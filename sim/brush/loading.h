@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "signal/ink_event.h"
@@ -23,12 +24,17 @@ inline int patch_at(double along, double around) {
 
 struct LoadedPatch {
   double capacity_ul = 0;
-  double water_ul = 0;  // below zero: the paper took more than was there, before the tuft heard of it
+  double water_ul = 0;  // below zero: the paper took more than was set aside for it
   std::array<double, concentrations_per_group> pigment_ul{};
 };
 
+using PerPatch = std::array<double, patch_count>;
+using Withdrawal = std::array<PatchExchange, patch_count>;
+
+// What the tuft holds is in the patches and in what is set aside together.
 struct Loading {
   std::array<LoadedPatch, patch_count> patches;
+  std::deque<Withdrawal> set_aside;  // for events that the paper has not yet answered, the oldest first
   bool endless = false;
 };
 
@@ -42,14 +48,21 @@ void fill(Loading& loading, double wetness, const Concentrations& strength);
 // Water in the tuft over its capacity, 0 to 1.
 double wetness(const Loading& loading);
 
+// What each patch would offer as it is.
 std::vector<InkLoad> offered(const Loading& loading);
-
-// Books what the paper took and gave back; an endless tuft does not change. Patches beyond those of
-// the tuft are an error of the caller (std::invalid_argument).
-void book(Loading& loading, const Exchange& exchange);
 
 // Evens out moisture between neighbouring patches for `step_s` at `rate_per_s`; pigment goes with the
 // water it is dissolved in. Totals do not change.
 void even_out(Loading& loading, double rate_per_s, double step_s);
+
+// The same while the paper draws on the tuft: `demand_ul` is what it would take of each patch in this time
+// if that stayed full. Says what each offers, and sets that much aside until the paper answers. So a patch
+// that empties in less time than an answer takes runs evenly on what reaches it along the hair.
+std::vector<InkLoad> draw(Loading& loading, double rate_per_s, double step_s, const PerPatch& demand_ul);
+
+// Books what the paper took and gave back in the oldest event for which ink is set aside, if any is; an
+// endless tuft does not change. Patches beyond those of the tuft are an error of the caller
+// (std::invalid_argument).
+void book(Loading& loading, const Exchange& exchange);
 
 }  // namespace fude

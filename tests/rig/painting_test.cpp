@@ -49,6 +49,40 @@ TEST(Replay, WhatWasDepositedIsAccountedFor) {
   EXPECT_GT(ink.water_evaporated, 0);
 }
 
+TEST(Painting, WhatTheBrushLostIsOnThePaper) {
+  PaintingSetup setup = settings().painting;
+  setup.ink.width_mm = setup.ink.height_mm = gesture::sheet_mm;
+  Painting painting = Painting::open(setup).value();
+  const auto left_in_brush = [&] {
+    double water = 0;
+    double pigment = 0;
+    for (const LoadedPatch& patch : painting.brush(PenEnd::tip).state().loading.patches) {
+      water += patch.water_ul;
+      pigment += patch.pigment_ul[0];
+    }
+    return std::pair(water, pigment);
+  };
+  const auto [water, pigment] = left_in_brush();
+  const Session session = gesture::session(200, 2);
+  bool waited = false;
+  for (const TimedInput& input :
+       inputs_of(session, plan_sheet(session, {}).value(), settings().reach, painting.step_s())) {
+    painting.advance_to(input.step);
+    const auto& move = std::get<BrushMove>(input.input);
+    painting.move(move.end, move.input);
+    waited = waited || painting.brush(PenEnd::tip).state().loading.set_aside.size() > 2;
+  }
+  EXPECT_TRUE(waited);
+  painting.advance_to(painting.step() + 4);
+  painting.act(Action{{}, ReshapeBrush{}});  // it hears the last answers
+  EXPECT_TRUE(painting.brush(PenEnd::tip).state().loading.set_aside.empty());
+  const InkTotals totals = painting.ink().totals();
+  EXPECT_NEAR(water - left_in_brush().first, totals.water_deposited, 1e-4 * totals.water_deposited);
+  EXPECT_NEAR(pigment - left_in_brush().second, totals.pigment_deposited[0],
+              1e-4 * totals.pigment_deposited[0]);
+  EXPECT_GT(totals.pigment_deposited[0], 0.1);
+}
+
 TEST(Replay, ThreadsDoNotChangeThePicture) {
   const Session session = gesture::session(150, 2);
   EXPECT_EQ(painted(session, settings(1)).picture_sha256, painted(session, settings(2)).picture_sha256);

@@ -28,6 +28,7 @@ bool same(const std::optional<Deposit>& a, const std::optional<Deposit>& b) {
 Brush dipped() {
   Brush brush(BrushSpec{}, 9);
   brush.load(0.4F, {1, 0.2F, 0, 0.1F});
+  brush.expect_film(0.05);
   return brush;
 }
 

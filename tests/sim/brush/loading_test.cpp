@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <random>
 #include <stdexcept>
 
@@ -93,6 +94,83 @@ TEST(Loading, MoistureEvensOutAtItsRate) {
   EXPECT_GT(coarse, 0.3);
   EXPECT_LT(coarse, 1);
   EXPECT_NEAR(driest_after(500, 0.001), coarse, 0.02);  // a rate per second, not per step
+}
+
+TEST(Loading, WhatIsOfferedIsSetAsideUntilThePaperAnswers) {
+  Loading loading = full_loading();
+  const Total before = total(loading);
+  PerPatch demand{};
+  demand[9] = 0.3;
+  demand[62] = 0.1;
+  std::vector<InkLoad> loads;
+  for (int i = 0; i < 3; ++i) loads = draw(loading, 2, 0.01, demand);
+  ASSERT_EQ(loading.set_aside.size(), 3U);
+  Total aside;
+  for (const Withdrawal& w : loading.set_aside)
+    for (const PatchExchange& patch : w) {
+      aside.water += patch.water_ul;
+      aside.pigment += patch.pigment_ul[0];
+    }
+  EXPECT_NEAR(total(loading).water + aside.water, before.water, 1e-9);
+  EXPECT_NEAR(total(loading).pigment + aside.pigment, before.pigment, 1e-9);
+  EXPECT_NEAR(loading.set_aside.back()[9].water_ul, 0.3 * static_cast<double>(loads[9].wetness), 1e-6);
+
+  // The paper refuses some of the first, takes more than was meant of the second, none of the third.
+  Exchange exchange;
+  exchange.patches.resize(patch_count);
+  exchange.patches[9] = {0.12, {0.1, 0, 0, 0}};
+  book(loading, exchange);
+  exchange.patches[9] = {0.5, {0.4, 0, 0, 0}};
+  book(loading, exchange);
+  book(loading, {});
+  EXPECT_TRUE(loading.set_aside.empty());
+  EXPECT_NEAR(total(loading).water, before.water - 0.62, 1e-9);
+  EXPECT_NEAR(total(loading).pigment, before.pigment - 0.5, 1e-9);
+}
+
+// The tip holds less than the paper takes of it while its answer is on the way.
+struct Supply {
+  std::vector<double> wetness;  // offered, frame by frame
+  double water_ul = 0;          // in all
+};
+Supply supply_of_the_tip(double rate_hz) {
+  constexpr double seconds = 0.4;
+  constexpr double answer_s = 0.03;
+  Loading loading = full_loading();
+  constexpr std::size_t tip = patch_count - 1;
+  PerPatch demand{};
+  demand[tip] = 30 / rate_hz;
+  Supply supply;
+  const int late = static_cast<int>(answer_s * rate_hz);
+  std::deque<Exchange> answers;
+  for (int i = 0; i < seconds * rate_hz; ++i) {
+    if (static_cast<int>(answers.size()) == late) {
+      book(loading, answers.front());
+      answers.pop_front();
+    }
+    supply.wetness.push_back(static_cast<double>(draw(loading, 6, 1 / rate_hz, demand)[tip].wetness));
+    Exchange answer;
+    answer.patches.resize(patch_count);
+    answer.patches[tip].water_ul = demand[tip] * supply.wetness.back();
+    supply.water_ul += answer.patches[tip].water_ul;
+    answers.push_back(answer);
+  }
+  return supply;
+}
+
+TEST(Loading, ATipThatEmptiesFasterThanAnswersComeRunsEvenly) {
+  const Supply supply = supply_of_the_tip(200);
+  for (std::size_t i = 5; i < supply.wetness.size(); ++i) {
+    EXPECT_LE(supply.wetness[i], supply.wetness[i - 1] + 1e-6) << i;
+    EXPECT_GT(supply.wetness[i], 0.98 * supply.wetness[i - 1]) << i;
+  }
+  EXPECT_GT(supply.wetness.back(), 0.1);
+}
+
+TEST(Loading, SupplyDoesNotDependOnTheSampleRate) {
+  const double finest = supply_of_the_tip(1000).water_ul;
+  EXPECT_NEAR(supply_of_the_tip(100).water_ul, finest, 0.02 * finest);
+  EXPECT_NEAR(supply_of_the_tip(250).water_ul, finest, 0.02 * finest);
 }
 
 TEST(Loading, DebtIsKeptAndOffersNothing) {
