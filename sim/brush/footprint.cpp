@@ -116,7 +116,10 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
     add_covered(now_, static_cast<float>(instant.duration_s), map.contact_s);
     passed_.add(now_);
     if (i > 0) {
-      add_passage(filling_, instants_[i - 1].contact, instant.contact);
+      for_each_passage(instants_[i - 1].contact, instant.contact,
+                       [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
+                         filling_.add_quad(a.at, b.at, c.at, d.at);
+                       });
       filling_.fill(passed_);
     }
     if (!instant.ends_step) continue;
@@ -126,6 +129,19 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
     passed_.reset(frame);
   }
   add_covered(fresh_, 1, map.fresh);
+}
+
+// Newly covered paper takes after the hair that came over it, on the rim: so streaks run on from one frame to
+// the next. What is covered on and on takes after the hair that touches it last.
+void FootprintSweep::stamp(FootprintMap& map, const HairTexture& texture,
+                           const std::vector<InkLoad>& loads) const {
+  Stamp stamp(touched_.frame(), texture, loads, map);
+  stamp.wait_for(fresh_);
+  for (std::size_t i = 1; i < count_ && stamp.waits(); ++i)
+    stamp.add_passage(instants_[i - 1].contact, instants_[i].contact);
+  stamp.wait_for(touched_);
+  for (std::size_t i = count_; i-- > 0 && stamp.waits();) stamp.add(instants_[i].contact.contact());
+  stamp.finish();
 }
 
 std::optional<FootprintMap> FootprintSweep::sweep(std::span<const TimedSurface> after, double cell_mm,
@@ -145,9 +161,7 @@ std::optional<FootprintMap> FootprintSweep::sweep(std::span<const TimedSurface> 
     map->fresh.assign(cells, 0);
     map->contact_s.assign(cells, 0);
     find_coverage(*frame, *map);
-    Stamp stamp(touched_, texture, loads, *map);
-    for (std::size_t i = count_; i-- > 0;) stamp.add(instants_[i].contact.contact());
-    stamp.finish();
+    stamp(*map, texture, loads);
   } else {
     settled_.reset({});
   }

@@ -47,6 +47,7 @@ class FootprintSweep {
   void find_instants(std::span<const TimedSurface> after);
   std::optional<CoverageFrame> frame_of_instants(double cell_mm) const;
   void find_coverage(const CoverageFrame& frame, FootprintMap& map);
+  void stamp(FootprintMap& map, const HairTexture& texture, const std::vector<InkLoad>& loads) const;
 
   TuftSurface last_;  // empty: from nowhere
   bool settled_known_ = false;

@@ -11,9 +11,9 @@ namespace fude {
 
 using Eigen::Vector2d;
 
-Stamp::Stamp(const Coverage& touched, const HairTexture& texture, const std::vector<InkLoad>& loads,
+Stamp::Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
              FootprintMap& map)
-    : frame_(touched.frame()), texture_(texture), loads_(loads), map_(map) {
+    : frame_(frame), texture_(texture), loads_(loads), map_(map) {
   map.patch.assign(map.fresh.size(), 0);
   for (const InkLoad& load : loads)
     streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
@@ -21,11 +21,21 @@ Stamp::Stamp(const Coverage& touched, const HairTexture& texture, const std::vec
   words_ = static_cast<std::size_t>(frame_.columns() + 63) / 64;
   waiting_.assign(words_ * static_cast<std::size_t>(map.rows), 0);
   named_.assign(waiting_.size(), 0);
+}
+
+void Stamp::wait_for(const Coverage& cover) {
   constexpr int in_word = 64 / cells_per_word;
   for (int row = 0; row < frame_.rows; ++row)
-    for (int word = 0; word < frame_.words; ++word)
-      waiting_[static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(word / in_word)] |=
-          touched.cells(row, word) << (word % in_word * cells_per_word);
+    for (int word = 0; word < frame_.words; ++word) {
+      if (!cover.any(row, word)) continue;
+      const std::size_t i = static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(word / in_word);
+      const std::uint64_t cells = cover.whole(row, word) ? 0xffff : cover.cells(row, word);
+      waiting_[i] |= cells << (word % in_word * cells_per_word) & ~named_[i];
+    }
+}
+
+bool Stamp::waits() const {
+  return std::any_of(waiting_.begin(), waiting_.end(), [](std::uint64_t bits) { return bits != 0; });
 }
 
 // Calls take(first, end) for each stretch of cells that wait in [first, end); they wait no longer.
@@ -35,6 +45,7 @@ void Stamp::take_waiting(int row, int first, int end, Take take) {
     const std::size_t i = static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(word);
     std::uint64_t bits = waiting_[i] & ~std::uint64_t{0} << std::max(first - word * 64, 0);
     if (end - word * 64 < 64) bits &= ~(~std::uint64_t{0} << (end - word * 64));
+    if (bits == 0) continue;
     waiting_[i] &= ~bits;
     named_[i] |= bits;
     while (bits != 0) {
@@ -47,45 +58,66 @@ void Stamp::take_waiting(int row, int first, int end, Take take) {
   }
 }
 
-Stamp::Corner Stamp::corner(const ContactRing& ring, std::size_t j) const {
-  return {(ring.point[j] - Vector2d(frame_.left_mm(), frame_.bottom_mm())) / frame_.cell_mm,
-          {ring.along, ring.around[j]}};
+MeshPoint Stamp::in_cells(const MeshPoint& p) const {
+  return {(p.at - Vector2d(frame_.left_mm(), frame_.bottom_mm())) / frame_.cell_mm, p.on_tuft};
 }
 
 void Stamp::add(const Contact& contact) {
+  const auto corner = [&](const ContactRing& ring, std::size_t j) {
+    return in_cells({ring.point[j], {ring.along, ring.around[j]}});
+  };
   for (std::size_t r = 0; r < contact.run_ends.size(); ++r) {
     const auto run = contact.run(r);
     for (std::size_t i = 1; i < run.size(); ++i)
       for (std::size_t j = 1; j < ring_points; ++j) {
-        const Corner a = corner(run[i - 1], j - 1);
-        const Corner c = corner(run[i], j);
-        add_triangle(a, corner(run[i - 1], j), c);
-        add_triangle(a, c, corner(run[i], j - 1));
+        add_quad(corner(run[i - 1], j - 1), corner(run[i - 1], j), corner(run[i], j), corner(run[i], j - 1));
       }
   }
 }
 
+void Stamp::add_passage(const ContactMesh& from, const ContactMesh& to) {
+  for_each_passage(from, to,
+                   [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
+                     add_quad(in_cells(a), in_cells(b), in_cells(c), in_cells(d));
+                   });
+}
+
+void Stamp::add_quad(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
+  const Vector2d low = a.at.cwiseMin(b.at).cwiseMin(c.at.cwiseMin(d.at));
+  const Vector2d high = a.at.cwiseMax(b.at).cwiseMax(c.at.cwiseMax(d.at));
+  const auto first_word = static_cast<std::size_t>(std::max(low.x(), 0.0)) / 64;
+  const auto end_word = std::min(static_cast<std::size_t>(std::max(high.x(), 0.0)) / 64 + 1, words_);
+  const auto first_row = static_cast<std::size_t>(std::max(low.y(), 0.0));
+  const auto end_row =
+      std::min(static_cast<std::size_t>(std::max(high.y(), 0.0)) + 1, static_cast<std::size_t>(map_.rows));
+  std::uint64_t any = 0;
+  for (std::size_t row = first_row; row < end_row; ++row)
+    for (std::size_t word = first_word; word < end_word; ++word) any |= waiting_[row * words_ + word];
+  if (any == 0) return;
+  add_triangle(a, b, c);
+  add_triangle(a, c, d);
+}
+
 // The place on the tuft goes over linearly within a triangle.
-void Stamp::add_triangle(const Corner& a, const Corner& b, const Corner& c) {
-  const Vector2d u = b.cell - a.cell;
-  const Vector2d v = c.cell - a.cell;
+void Stamp::add_triangle(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c) {
+  const Vector2d u = b.at - a.at;
+  const Vector2d v = c.at - a.at;
   const double area = u.x() * v.y() - u.y() * v.x();
   if (std::abs(area) < 1e-12) return;
   const Vector2d by_u = (b.on_tuft - a.on_tuft) / area;
   const Vector2d by_v = (c.on_tuft - a.on_tuft) / area;
   const Vector2d by_x = v.y() * by_u - u.y() * by_v;
   const Vector2d by_y = u.x() * by_v - v.x() * by_u;
-  scan_triangle(a.cell, b.cell, c.cell, map_.rows, [&](int row, double from, double to) {
+  scan_triangle(a.at, b.at, c.at, map_.rows, [&](int row, double from, double to) {
     const int first = first_centre(from, map_.columns);
     const int end = first_centre(to, map_.columns);
-    if (first >= end) return;
-    const Vector2d start = a.on_tuft + (row + 0.5 - a.cell.y()) * by_y - a.cell.x() * by_x;
-    const auto patch = [&](int column) {
-      const Vector2d place = start + (column + 0.5) * by_x;
-      return static_cast<std::uint16_t>(patch_at(place[0], place[1]));
-    };
     std::uint16_t* patches = map_.patch.data() + at(row, 0);
     take_waiting(row, first, end, [&](int from_column, int end_column) {
+      const Vector2d start = a.on_tuft + (row + 0.5 - a.at.y()) * by_y - a.at.x() * by_x;
+      const auto patch = [&](int column) {
+        const Vector2d place = start + (column + 0.5) * by_x;
+        return static_cast<std::uint16_t>(patch_at(place[0], place[1]));
+      };
       const std::uint16_t head = patch(from_column);
       if (head == patch(end_column - 1))
         std::fill(patches + from_column, patches + end_column, head);

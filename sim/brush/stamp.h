@@ -7,32 +7,35 @@
 #include <vector>
 
 #include "signal/ink_event.h"
+#include "sim/brush/contact_mesh.h"
 #include "sim/brush/coverage.h"
 #include "sim/brush/hair_texture.h"
 #include "sim/brush/tuft_surface.h"
 
 namespace fude {
 
-// Names the patch of every cell of `map` that holds a sample of `touched` (over the same frame), and takes
-// off the share of it under hair that leaves no ink.
+// Names the patches of a map's cells, and takes off the share of them under hair that leaves no ink.
 class Stamp {
  public:
-  Stamp(const Coverage& touched, const HairTexture& texture, const std::vector<InkLoad>& loads,
+  // `map` is over `frame`; both outlive the stamp.
+  Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
         FootprintMap& map);
 
-  // Cells that no earlier call has named: from the last instant back to the first.
-  void add(const Contact& contact);
+  // Cells that hold a sample of `cover` wait to be named, if they are not yet.
+  void wait_for(const Coverage& cover);
+  bool waits() const;
 
-  // Cells that hold a sample of the footprint but no centre take after a neighbour.
+  // Names cells that wait: those under the contact, or under its rim on its way from a to b.
+  void add(const Contact& contact);
+  void add_passage(const ContactMesh& a, const ContactMesh& b);
+
+  // Cells that still wait, since no centre of theirs was covered, take after a neighbour.
   void finish();
 
  private:
-  struct Corner {
-    Eigen::Vector2d cell;
-    Eigen::Vector2d on_tuft;  // along, around
-  };
-  Corner corner(const ContactRing& ring, std::size_t j) const;
-  void add_triangle(const Corner& a, const Corner& b, const Corner& c);
+  MeshPoint in_cells(const MeshPoint& p) const;
+  void add_quad(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d);
+  void add_triangle(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c);
   template <class Take>
   void take_waiting(int row, int first, int end, Take take);
   std::size_t nearest(int row, int column) const;

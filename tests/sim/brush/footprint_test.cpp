@@ -199,6 +199,32 @@ TEST(Footprint, NothingInTheAir) {
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(brush.move(input_at(0.01 * i, upright(i, 0, 40))).deposit);
 }
 
+TEST(Footprint, StreaksRunOnFromFrameToFrame) {
+  BrushSpec spec;
+  spec.soak_mm = 0;
+  Brush brush(spec, 5);
+  brush.load(0.2F, {1, 0, 0, 0});
+  Sheet sheet;
+  for (int i = 0; i < 250; ++i) {
+    const double t = 0.004 * i;
+    const BrushFrame frame =
+        brush.move(input_at(t, leaning(120 * ease((t - 0.3) / 0.7), 0, 33 - 12 * ease(t / 0.3), 0.2, 0)));
+    if (frame.deposit) sheet.add(frame.deposit->map);
+  }
+  // From cell to cell the film changes little along the way of the hair, and much across it.
+  const double cell = spec.cell_mm;
+  double along = 0;
+  double across = 0;
+  for (double x = 40; x < 60; x += cell)
+    for (double y = -1.5; y < 1.5; y += cell) {
+      const double here = sheet.at(x + 0.01, y + 0.01, cell);
+      along += std::abs(sheet.at(x + cell + 0.01, y + 0.01, cell) - here);
+      across += std::abs(sheet.at(x + 0.01, y + cell + 0.01, cell) - here);
+    }
+  EXPECT_GT(across, 0);
+  EXPECT_LT(along, 0.3 * across);
+}
+
 TEST(Footprint, DryTuftLeavesStreaks) {
   const auto inked_share = [](float wetness, bool texture) {
     BrushSpec spec;
