@@ -18,11 +18,18 @@ struct Overlap {
   }
 };
 
+// An edge that lies on the lattice but for rounding does lie on it: else each cell of a map that fits the
+// lattice would touch nine.
+double on_lattice(double cells) {
+  const double nearest = std::round(cells);
+  return std::abs(cells - nearest) < 1e-6 ? nearest : cells;
+}
+
 Overlap overlap(double low_mm, double size_mm, double cell_mm, int cells) {
-  const double low = std::max(low_mm / cell_mm, 0.0);
-  const double high = std::min((low_mm + size_mm) / cell_mm, static_cast<double>(cells));
+  const double low = std::max(on_lattice(low_mm / cell_mm), 0.0);
+  const double high = std::min(on_lattice((low_mm + size_mm) / cell_mm), static_cast<double>(cells));
   if (!(low < high)) return {0, -1, 0, 0};
-  return {static_cast<int>(low), std::min(static_cast<int>(high), cells - 1), low, high};
+  return {static_cast<int>(low), static_cast<int>(std::ceil(high)) - 1, low, high};
 }
 
 float positive(float x, float most) { return x > 0 && std::isfinite(x) ? std::min(x, most) : 0; }
@@ -58,7 +65,8 @@ class Buckets {
     for (std::size_t i = 0; i + 1 < begin_.size(); ++i) {
       const auto first = pieces_.begin() + static_cast<std::ptrdiff_t>(begin_[i]);
       const auto last = pieces_.begin() + static_cast<std::ptrdiff_t>(begin_[i + 1]);
-      std::stable_sort(first, last, [](const Piece& a, const Piece& b) { return a.patch < b.patch; });
+      if (last - first > 1)
+        std::stable_sort(first, last, [](const Piece& a, const Piece& b) { return a.patch < b.patch; });
       for (auto p = first; p != last;) {
         Piece sum{p->patch, 0, 0};
         for (; p != last && p->patch == sum.patch; ++p) {
@@ -97,10 +105,13 @@ std::vector<TouchedCell> touched_cells(const Deposit& deposit, double cell_mm, i
       !(map.cell_mm > 0))
     return {};
   // A little wider than the map: the edges of its last cells are rounded otherwise than its own.
-  const double rim = 1e-6 * cell_mm;
+  const double rim = 2e-6 * cell_mm;
   const Overlap across = overlap(map.left_mm - rim, map.columns * map.cell_mm + 2 * rim, cell_mm, columns);
   const Overlap up = overlap(map.bottom_mm - rim, map.rows * map.cell_mm + 2 * rim, cell_mm, rows);
   if (across.last < across.first || up.last < up.first) return {};
+  std::vector<Overlap> of_column;
+  for (int x = 0; x < map.columns; ++x)
+    of_column.push_back(overlap(map.left_mm + x * map.cell_mm, map.cell_mm, cell_mm, columns));
 
   const auto for_each_piece = [&](const auto& take) {
     for (int y = 0; y < map.rows; ++y) {
@@ -111,7 +122,7 @@ std::vector<TouchedCell> touched_cells(const Deposit& deposit, double cell_mm, i
         const float fresh = positive(map.fresh[i], 1.0F);
         const float contact = positive(map.contact_s[i], 1e6F);
         if ((fresh == 0 && contact == 0) || map.patch[i] >= deposit.patches.size()) continue;
-        const Overlap u = overlap(map.left_mm + x * map.cell_mm, map.cell_mm, cell_mm, columns);
+        const Overlap& u = of_column[static_cast<std::size_t>(x)];
         for (int row = v.first; row <= v.last; ++row)
           for (int column = u.first; column <= u.last; ++column) {
             const double share = u.share(column) * v.share(row);
