@@ -188,18 +188,21 @@ void make_edges_anew(const LatticeNumbers& k, float* block, int parity) {
   make_edges<ink>(k, block, columns, parity);
 }
 
-// Asks for what a later row needs: the processor does not foresee jumps between this many planes and loops
-// (docs/kernels.md has what it is worth).
+// Asks for what later rows need: the processor does not foresee jumps between this many planes and loops. Far
+// ahead from memory, shortly before into the first level (docs/kernels.md has what it is worth).
 constexpr int rows_ahead = 8;
+constexpr int rows_soon = 2;
 constexpr int cache_line = 64 / sizeof(float);
 
+enum class Level { first = 3, second = 2 };  // as __builtin_prefetch counts
+
 // One of `parts` equal parts of some floats: the processor waits when it is asked for too much at once.
-template <int part = 0, int parts = 1>
+template <Level level, int part = 0, int parts = 1>
 FUNCTION void fetch(const float* first, int floats) {
   const int count = floats / cache_line;
 #pragma GCC unroll 64
   for (int i = count * part / parts; i < count * (part + 1) / parts; ++i)
-    __builtin_prefetch(first + i * cache_line, 1, 2);
+    __builtin_prefetch(first + i * cache_line, level == Level::second, static_cast<int>(level));
 }
 
 struct Ahead {
@@ -208,13 +211,19 @@ struct Ahead {
 
   template <bool ink, int part>
   [[gnu::always_inline]] void row(int y) const {
-    const int later = y + rows_ahead;
-    const float* row = (later < tile::side ? here : next).block(0, 0) + later % tile::side * tile::row_stride;
+    fetch_row<Level::second, ink, part>(y + rows_ahead);
+    if (y + rows_soon < tile::side) fetch_row<Level::first, ink, part>(y + rows_soon);
+  }
+
+  // Of this tile or, past its end, of the next.
+  template <Level level, bool ink, int part>
+  [[gnu::always_inline]] void fetch_row(int y) const {
+    const float* row = (y < tile::side ? here : next).block(0, 0) + y % tile::side * tile::row_stride;
     if constexpr (ink) {
-      fetch<part, 3>(row, tile::row_stride);
+      fetch<level, part, 3>(row, tile::row_stride);
     } else {
-      fetch<part, 3>(row, tile::mass * tile::plane_stride);
-      if constexpr (part == 0) fetch(row + tile::paper_begin * tile::plane_stride, tile::plane_stride);
+      fetch<level, part, 3>(row, tile::mass * tile::plane_stride);
+      if constexpr (part == 0) fetch<level>(row + tile::paper_begin * tile::plane_stride, tile::plane_stride);
     }
   }
 
@@ -222,11 +231,11 @@ struct Ahead {
   // west, which this tile leaves in the cache.
   [[gnu::always_inline]] void edges(int y) const {
     constexpr int own = (2 * tile::edges_stride / cache_line + tile::side - 1) / tile::side * cache_line;
-    fetch(next.block(0, 0) + tile::edges_begin + y * own, own);
+    fetch<Level::second>(next.block(0, 0) + tile::edges_begin + y * own, own);
     if (y * cache_line >= tile::edge_floats) return;
-    fetch(next.edge(1, 0, tile::west) + y * cache_line, cache_line);
-    fetch(next.edge(0, 1, tile::south) + y * cache_line, cache_line);
-    fetch(next.edge(0, -1, tile::north) + y * cache_line, cache_line);
+    fetch<Level::second>(next.edge(1, 0, tile::west) + y * cache_line, cache_line);
+    fetch<Level::second>(next.edge(0, 1, tile::south) + y * cache_line, cache_line);
+    fetch<Level::second>(next.edge(0, -1, tile::north) + y * cache_line, cache_line);
   }
 };
 
