@@ -20,8 +20,8 @@ namespace fude {
 struct PaintingSetup {
   BrushSpec brush;
   InkSetup ink;
-  LoadBrush load{1,
-                 {1, 0, 0, 0.1F}};  // what both ends of the pen start with; the rubber end holds water only
+  // What both ends of the pen start with: ink ground thick, as for writing. The rubber end holds water only.
+  LoadBrush load{0.8F, {1.2F, 0, 0, 0.4F}};
   bool endless = false;             // --ink endless: the brush stays full
   std::uint64_t seed = 1;
 };
