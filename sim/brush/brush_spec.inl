@@ -56,7 +56,7 @@ BRUSH_PARAMETER(streak_wetness, "1", 0, 1, 0.45, "wetness below which streaks op
 
 // Footprint and time
 BRUSH_PARAMETER(cell_mm, "mm", 0.01, 1, 0.05, "cell of the footprint map")
-BRUSH_PARAMETER(longest_step_s, "s", 0.0005, 0.1, 0.002, "a longer frame is solved in steps")
+BRUSH_PARAMETER(longest_step_s, "s", 0.0005, 0.1, 0.001, "a longer frame is solved in steps")
 BRUSH_PARAMETER(iteration_limit, "count", 1, 200, 20, "of the solver, in one step")
 
 BRUSH_SWITCH(spread, true, "lateral nodes move: the tuft flattens and spreads")

@@ -112,24 +112,50 @@ struct SubmergedStation {
   SubmergedArc arc;
 };
 
-// Where the surface leaves the paper between two stations its width falls as the root of its depth.
-void append_ending(const SubmergedStation& wet, const SubmergedStation& dry,
-                   std::vector<ContactRing>& rings) {
-  const ContactRing ring = ring_of(*wet.station, wet.index, wet.arc);
-  const Vector2d low = section_point(*wet.station, wet.arc.lowest).head<2>();
-  const SubmergedArc dry_arc = submerged_arc(*dry.station);
-  const Vector2d far = section_point(*dry.station, dry_arc.lowest).head<2>();
-  const double share = wet.arc.depth / (wet.arc.depth - dry_arc.depth);
-  const bool opening = dry.index < wet.index;
-  constexpr std::array<double, 3> steps = {0.64, 0.91, 1};
-  constexpr std::array<double, 3> widths = {0.6, 0.3, 0};
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t j = index(opening ? 2 - i : i);
-    const double t = share * steps[j];
-    rings.push_back(narrowed(ring, low, low + t * (far - low),
-                             wet.station->along + t * (dry.station->along - wet.station->along), widths[j]));
-    rings.back().place += opening ? i - 3 : i + 1;
+// Where along the way from a wide ring to a narrower one the rings between them stand.
+constexpr std::array<double, 3> narrowing_steps = {0.64, 0.91, 1};
+
+// The first `count` of those rings. The square of the width falls evenly, as the depth does, down to
+// `last_width` of the wide ring at `share` of the way.
+void append_narrowing(const SubmergedStation& wide, const SubmergedStation& other, double share,
+                      double last_width, int count, std::vector<ContactRing>& rings) {
+  const ContactRing ring = ring_of(*wide.station, wide.index, wide.arc);
+  const Vector2d low = section_point(*wide.station, wide.arc.lowest).head<2>();
+  const Vector2d far = section_point(*other.station, other.arc.lowest).head<2>();
+  const bool opening = other.index < wide.index;
+  for (int i = 0; i < count; ++i) {
+    const int step = opening ? count - 1 - i : i;
+    const double t = narrowing_steps[index(step)];
+    const double width = elementary::square_root(1 - t * (1 - last_width * last_width));
+    rings.push_back(narrowed(ring, low, low + share * t * (far - low),
+                             wide.station->along + share * t * (other.station->along - wide.station->along),
+                             width));
+    rings.back().place += opening ? -1 - step : 1 + step;
   }
+}
+
+// Where the surface leaves the paper between two stations.
+void append_ending(const SubmergedStation& wet, SubmergedStation dry, std::vector<ContactRing>& rings) {
+  dry.arc = submerged_arc(*dry.station);
+  append_narrowing(wet, dry, wet.arc.depth / (wet.arc.depth - dry.arc.depth), 0, 3, rings);
+}
+
+double width(const SubmergedStation& s) {
+  return (section_point(*s.station, s.arc.to) - section_point(*s.station, s.arc.from)).head<2>().norm();
+}
+
+// Between two stations of which one hardly dips in, so that it passes into an ending when it leaves the
+// paper. (Arcs are compared, not widths: towards the tip all grows narrow.)
+void append_between(const SubmergedStation& a, const SubmergedStation& b, std::vector<ContactRing>& rings) {
+  constexpr double alike = 0.7;
+  const double arc_a = a.arc.to - a.arc.from;
+  const double arc_b = b.arc.to - b.arc.from;
+  const auto narrow = [&](const SubmergedStation& wide, const SubmergedStation& other) {
+    const double share = std::min(1.0, width(other) / width(wide));
+    append_narrowing(wide, other, 1, share, 2, rings);
+  };
+  if (arc_b < alike * arc_a) narrow(a, b);
+  if (arc_a < alike * arc_b) narrow(b, a);
 }
 
 // A steep tip touches with its point alone, which no section's plane shows.
@@ -250,6 +276,7 @@ void contact_of(const TuftSurface& surface, Contact& contact) {
   for (int i = 0; i < count; ++i) {
     const SubmergedStation here = submerged(i);
     if (dips(here)) {
+      if (i > 0 && dips(before)) append_between(before, here, contact.rings);
       if (i > 0 && !dips(before)) append_ending(here, before, contact.rings);
       contact.rings.push_back(ring_of(*here.station, i, here.arc));
       if (i + 1 == count) contact.run_ends.push_back(contact.rings.size());
