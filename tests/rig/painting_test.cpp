@@ -88,6 +88,15 @@ TEST(Replay, ThreadsDoNotChangeThePicture) {
   EXPECT_EQ(painted(session, settings(1)).picture_sha256, painted(session, settings(2)).picture_sha256);
 }
 
+// Release builds, sanitizers and other compilers are held to the same picture. It changes with the physics of
+// brush, ink or colour, and then on purpose.
+TEST(Replay, IsTheSamePictureInEveryBuild) {
+  ReplaySettings s = settings();
+  s.settle.seconds = 1;
+  EXPECT_EQ(painted(gesture::session(150, 2), s).picture_sha256,
+            "dfc442863a385213cf2b1409bb733f3be4f41e500dfd5f0dd5bf1acad3d86df2");
+}
+
 TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {
   ReplaySettings round_goat = settings();
   ReplaySettings standard = settings();
