@@ -116,8 +116,8 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
   if (!paper_spec) return tl::unexpected(paper_spec.error());
 
   const auto cell = number(given(cell_mm, recorded, "cell_mm", "0.1"));
-  if (!cell || !(*cell >= 0.01 && *cell <= 2))
-    return failure(Fault::usage, "--cell-mm takes 0.01 to 2 millimetres");
+  if (!cell || !(*cell >= 0.02 && *cell <= 1))
+    return failure(Fault::usage, "--cell-mm takes 0.02 to 1 millimetre");
   if (threads < 0 || threads > 256) return failure(Fault::usage, "--threads takes 0 to 256");
   if (const std::string sheet = given(size_mm, recorded, "sheet_mm", ""); !sheet.empty()) {
     const auto size = parse_extent(sheet, "--size-mm");

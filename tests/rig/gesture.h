@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "capture/session.h"
+#include "rig/replay.h"
+#include "rig/share_folder.h"
 #include "signal/elementary.h"
 
 namespace fude::gesture {
@@ -56,6 +58,17 @@ inline Session session(double rate_hz, int strokes) {
       s.pens.push_back(pen);
     }
   }
+  return s;
+}
+
+// What it is painted with: a round goat brush on cells of 0.2 mm.
+inline ReplaySettings settings(int threads = 1) {
+  ReplaySettings s;
+  s.painting.brush = read_brush_spec(find_shared("brushes", "round-goat", ".toml")->string()).value();
+  s.painting.ink.cell_mm = 0.2;
+  s.painting.ink.threads = threads;
+  s.reach = reach_of(s.painting.brush);
+  s.palette.pigments = {pigments()[0]};
   return s;
 }
 

@@ -13,15 +13,7 @@
 namespace fude {
 namespace {
 
-ReplaySettings settings(int threads = 1) {
-  ReplaySettings s;
-  s.painting.brush = read_brush_spec(find_shared("brushes", "round-goat", ".toml")->string()).value();
-  s.painting.ink.cell_mm = 0.2;
-  s.painting.ink.threads = threads;
-  s.reach = reach_of(s.painting.brush);
-  s.palette.pigments = {pigments()[0]};
-  return s;
-}
+using gesture::settings;
 
 ReplayReport painted(const Session& session, const ReplaySettings& s) {
   return replay(session, s, [](double) {}).value().report;

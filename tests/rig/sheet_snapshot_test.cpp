@@ -14,15 +14,7 @@
 namespace fude {
 namespace {
 
-ReplaySettings settings(double settle_s = 0) {
-  ReplaySettings s;
-  s.painting.brush = read_brush_spec(find_shared("brushes", "round-goat", ".toml")->string()).value();
-  s.painting.ink.cell_mm = 0.2;
-  s.reach = reach_of(s.painting.brush);
-  s.palette.pigments = {pigments()[0]};
-  s.settle.seconds = settle_s;
-  return s;
-}
+using gesture::settings;
 
 const auto silent = [](double) {};
 
@@ -37,7 +29,9 @@ TEST(SheetSnapshot, APaintingOnItGoesOnAsIfItHadNotStopped) {
   on.wish.sheet = Extent{Millimetres(gesture::sheet_mm), Millimetres(gesture::sheet_mm)};
   const Replayed continued = replay(second, on, silent).value();
   // A replay runs one step at least: the whole one runs as much longer.
-  const Replayed whole = replay(first, settings(continued.report.dt_s), silent).value();
+  ReplaySettings longer = settings();
+  longer.settle.seconds = continued.report.dt_s;
+  const Replayed whole = replay(first, longer, silent).value();
   EXPECT_EQ(continued.report.picture_sha256, whole.report.picture_sha256);
   EXPECT_EQ(continued.report.ink.pigment_deposited, whole.report.ink.pigment_deposited);
   EXPECT_EQ(continued.report.ink.water_evaporated, whole.report.ink.water_evaporated);
