@@ -23,10 +23,20 @@ struct Words<Direction> {
 };
 template <>
 struct Words<TransferKind> {
-  static constexpr std::array<std::pair<TransferKind, std::string_view>, 3> table{
+  static constexpr std::array<std::pair<TransferKind, std::string_view>, 13> table{
       {{TransferKind::evdev_frame, "evdev"},
+       {TransferKind::hid_report, "hid"},
+       {TransferKind::hid_feature, "hid_feature"},
+       {TransferKind::hid_ask, "hid_ask"},
+       {TransferKind::usb_control, "usb_control"},
+       {TransferKind::usb_bulk, "usb_bulk"},
+       {TransferKind::usb_interrupt, "usb_interrupt"},
+       {TransferKind::serial, "serial"},
+       {TransferKind::message, "message"},
+       {TransferKind::picture, "picture"},
        {TransferKind::plugged, "plugged"},
-       {TransferKind::unplugged, "unplugged"}}};
+       {TransferKind::unplugged, "unplugged"},
+       {TransferKind::suspended, "suspended"}}};
 };
 template <>
 struct Words<PenTool> {
@@ -40,8 +50,19 @@ struct Words<PenTool> {
 };
 template <>
 struct Words<DeviceKind> {
-  static constexpr std::array<std::pair<DeviceKind, std::string_view>, 3> table{
-      {{DeviceKind::pen_tablet, "tablet"}, {DeviceKind::mouse, "mouse"}, {DeviceKind::other, "other"}}};
+  static constexpr std::array<std::pair<DeviceKind, std::string_view>, 12> table{
+      {{DeviceKind::pen_tablet, "tablet"},
+       {DeviceKind::mouse, "mouse"},
+       {DeviceKind::touch, "touch"},
+       {DeviceKind::tracker, "tracker"},
+       {DeviceKind::imu, "imu"},
+       {DeviceKind::ultrasonic, "ultrasonic"},
+       {DeviceKind::puck, "puck"},
+       {DeviceKind::glove, "glove"},
+       {DeviceKind::haptic, "haptic"},
+       {DeviceKind::camera, "camera"},
+       {DeviceKind::clock, "clock"},
+       {DeviceKind::other, "other"}}};
 };
 
 template <class T>

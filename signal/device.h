@@ -11,7 +11,20 @@
 
 namespace fude {
 
-enum class DeviceKind : std::uint8_t { pen_tablet, mouse, other };
+enum class DeviceKind : std::uint8_t {
+  pen_tablet,
+  mouse,
+  touch,
+  tracker,
+  imu,
+  ultrasonic,
+  puck,
+  glove,
+  haptic,
+  camera,
+  clock,  // only ticks
+  other,
+};
 
 // One absolute axis as the kernel states it. `resolution` is counts per mm for positions and counts
 // per radian for angles; 0 where the device does not say.
@@ -30,7 +43,7 @@ struct DeviceDescription {
   std::string id;    // "056a:0304:SERIAL"; the serial may be empty
   std::string name;  // as the device calls itself
   DeviceKind kind = DeviceKind::other;
-  std::string transport;  // "evdev", "text", "mouse"
+  std::string transport;  // "evdev", "hidraw", "usb", "serial", "v4l2", "network", "text", "mouse"
   std::uint16_t bus = 0;
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;

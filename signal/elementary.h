@@ -65,10 +65,14 @@ inline SineCosine sine_cosine(double x) {
   const double s = detail::sine_core(r);
   const double c = detail::cosine_core(r);
   switch (static_cast<std::int64_t>(n) & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 

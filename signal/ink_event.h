@@ -19,7 +19,7 @@ using Concentrations = std::array<float, concentrations_per_group>;
 
 // What one patch of the tuft offers while this event lasts.
 struct InkLoad {
-  float wetness = 0;         // 0 dry to 1 full: how much of the film it can leave
+  float wetness = 0;          // 0 dry to 1 full: how much of the film it can leave
   Concentrations strength{};  // µl of full-strength pigment in one µl of what flows out, and glue likewise
 };
 
@@ -31,9 +31,9 @@ struct FootprintMap {
   double cell_mm = 0;
   int columns = 0;
   int rows = 0;
-  std::vector<float> fresh;           // 0..1: share of the cell newly covered during this event
-  std::vector<float> contact_s;       // seconds of contact during this event, times the share covered
-  std::vector<std::uint16_t> patch;   // index into Deposit::patches
+  std::vector<float> fresh;          // 0..1: share of the cell newly covered during this event
+  std::vector<float> contact_s;      // seconds of contact during this event, times the share covered
+  std::vector<std::uint16_t> patch;  // index into Deposit::patches
 };
 
 // A touch of the brush: a film on what is newly covered and an exchange over the time of contact
@@ -47,8 +47,8 @@ struct Deposit {
 struct DryPaper {};
 
 struct InkEvent {
-  Duration at{};           // session time
-  std::uint64_t id = 0;    // ascending
+  Duration at{};         // session time
+  std::uint64_t id = 0;  // ascending
   std::variant<Deposit, DryPaper> what;
 };
 

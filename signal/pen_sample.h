@@ -16,7 +16,7 @@ enum class PenTool : std::uint8_t { none, pen, rubber, brush, pencil, airbrush }
 // towards the painter; rotation > 0 turns it clockwise seen from above.
 struct PenSample {
   SampleTime time;
-  PenTool tool = PenTool::none;  // none: the pen has left
+  PenTool tool = PenTool::none;   // none: the pen has left
   std::uint64_t tool_serial = 0;  // 0 where the device does not say
   std::uint32_t tool_id = 0;      // ABS_MISC, the tool type of Wacom pens
   bool in_proximity = false;

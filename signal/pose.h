@@ -2,10 +2,9 @@
 // and compile only when the inner frames match.
 #pragma once
 
-#include <cstdint>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 
 namespace fude {
 

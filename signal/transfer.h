@@ -15,9 +15,19 @@ namespace fude {
 enum class Direction : std::uint8_t { from_device, to_device };
 
 enum class TransferKind : std::uint8_t {
-  evdev_frame,  // events up to and including one SYN_REPORT (or SYN_DROPPED): see EvdevEvent
-  plugged,      // payload empty; the device appeared
-  unplugged,    // payload empty; the device went away
+  evdev_frame,    // events up to and including one SYN_REPORT (or SYN_DROPPED): see EvdevEvent
+  hid_report,     // one input report (from) or output report (to); the first byte is its number, 0 without
+  hid_feature,    // one feature report: the answer (from) or a new value (to); first byte as above
+  hid_ask,        // to: asks for the feature report whose number is the only byte
+  usb_control,    // the 8 bytes of the setup packet, then the data of its own direction, if any
+  usb_bulk,       // one transfer of `endpoint`
+  usb_interrupt,  // one transfer of `endpoint`
+  serial,         // bytes as they came: neither their beginning nor their end means anything
+  message,        // one whole network message with its header
+  picture,        // one camera frame as the driver gave it
+  plugged,        // payload empty; the device appeared
+  unplugged,      // payload empty; the device went away
+  suspended,      // payload empty; it is there but silent until `plugged`
 };
 
 struct Transfer {
@@ -26,6 +36,7 @@ struct Transfer {
   Direction direction = Direction::from_device;
   TransferKind kind = TransferKind::evdev_frame;
   std::vector<std::byte> payload;
+  std::uint8_t endpoint = 0;  // a USB endpoint's address; else 0
   bool operator==(const Transfer&) const = default;
 };
 
