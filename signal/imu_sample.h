@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "signal/timestamp.h"
+#include "signal/units.h"
 
 namespace fude {
 
@@ -16,6 +17,7 @@ struct ImuSample {
   Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();  // +9.81 upward at rest
   std::optional<Eigen::Vector3d> magnetic_field_ut;
   std::optional<double> temperature_c;
+  std::optional<Fraction> battery;  // of its charge
   std::uint32_t buttons = 0;
   bool saturated = false;  // some axis stood at the end of its range
   bool valid = true;       // false: the device or the file says that it could not measure
