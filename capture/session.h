@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "signal/action.h"
+#include "signal/clock_fit.h"
 #include "signal/device.h"
-#include "signal/pen_sample.h"
 #include "signal/result.h"
+#include "signal/sample.h"
 #include "signal/transfer.h"
 
 namespace fude {
@@ -44,6 +45,13 @@ struct RecordedPen {
   std::optional<Step> applied;  // where the painting ran live
 };
 
+// Of every other kind of device.
+struct RecordedSample {
+  DeviceNumber device = 0;
+  Sample sample;
+  InputOrder order = 0;
+};
+
 struct RecordedAction {
   InputOrder order = 0;
   Action action;
@@ -56,6 +64,20 @@ struct Receipt {
   std::int64_t expected = 0;
   std::int64_t received = 0;
   std::int64_t dropped = 0;
+};
+
+// How one run of a device's clock lies on the host's; `part` as in part_of (capture/sample_columns.h).
+struct RecordedClockFit {
+  DeviceNumber device = 0;
+  std::string part;
+  ClockLine line;
+};
+
+// What an import could not understand, and how often.
+struct PassedOver {
+  DeviceNumber device = 0;
+  std::string what;
+  std::int64_t count = 0;
 };
 
 struct RecordedCalibration {
@@ -73,8 +95,11 @@ struct Session {
   std::vector<RecordedDevice> devices;
   std::vector<RecordedTransfer> transfers;
   std::vector<RecordedPen> pens;
+  std::vector<RecordedSample> samples;  // all kinds but pens, in their order
   std::vector<RecordedAction> actions;
   std::vector<Receipt> receipts;
+  std::vector<RecordedClockFit> clock_fits;
+  std::vector<PassedOver> passed_over;
   std::vector<RecordedCalibration> calibrations;
   std::map<std::string, std::string>
       settings;  // brush, paper, sheet size … as they were when recording began
@@ -84,6 +109,7 @@ struct Session {
 
 // Reads a whole session. One that was not closed is repaired first and reads as not complete.
 // Errors: not_found, no_access, busy, malformed (no session, damaged, hostile), unsupported (newer).
+// Formats 1 and 2.
 Result<Session> read_session(const std::filesystem::path& path);
 
 }  // namespace fude

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "capture/database.h"
+#include "capture/sample_columns.h"
 #include "capture/session.h"
 #include "capture/session_schema.h"
 #include "capture/session_words.h"
@@ -27,6 +29,10 @@ std::optional<Q> optional_quantity(const Statement& row, int column) {
 
 Timestamp time_at(const Statement& row, int column) { return Timestamp(Duration(row.integer(column))); }
 
+int counter_bits(std::int64_t stored) {
+  return stored == 8 || stored == 16 || stored == 32 ? static_cast<int>(stored) : 64;
+}
+
 // Reads one table, a row at a time.
 template <class Row>
 Result<void> each(Database& db, std::string_view sql, Row row) {
@@ -50,7 +56,7 @@ Result<T> value_at(const Statement& row, int column, const Database& db) {
 
 // The tables must be exactly ours: a session from a stranger cannot bring views, triggers or
 // generated columns of its own.
-Result<void> check_schema(Database& db) {
+Result<int> check_schema(Database& db) {
   const std::string name = db.path().string();
   int id = 0;
   int format = 0;
@@ -60,36 +66,38 @@ Result<void> check_schema(Database& db) {
                       return {};
                     });
       !r)
-    return r;
+    return tl::unexpected(r.error());
   if (auto r = each(db, "PRAGMA user_version",
                     [&](const Statement& s) -> Result<void> {
                       format = static_cast<int>(s.integer(0));
                       return {};
                     });
       !r)
-    return r;
+    return tl::unexpected(r.error());
   if (id != session_schema::application_id)
     return failure(Fault::malformed, name + " is a database but not a session of fude");
-  if (format != session_schema::format)
+  if (format < session_schema::oldest_format || format > session_schema::format)
     return failure(Fault::unsupported, name + " has format " + std::to_string(format) +
-                                           ", this fude reads format " +
+                                           ", this fude reads formats up to " +
                                            std::to_string(session_schema::format) + "; use a newer fude");
+  const std::vector<std::string> tables = session_schema::tables(format);
   std::size_t found = 0;
   auto r = each(
       db, "SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL", [&](const Statement& s) -> Result<void> {
-        for (const char* table : session_schema::tables)
+        for (const std::string& table : tables)
           if (s.text(0) == table) {
             ++found;
             return {};
           }
         return failure(Fault::malformed, name + " has a table that no fude writes; it is not opened");
       });
-  if (r && found != std::size(session_schema::tables))
+  if (!r) return tl::unexpected(r.error());
+  if (found != tables.size())
     return failure(Fault::malformed, name + " lacks tables of a session; it was cut off before it began");
-  return r;
+  return format;
 }
 
-Result<void> read_devices(Database& db, Session& session) {
+Result<void> read_devices(Database& db, int format, Session& session) {
   auto r = each(db, "SELECT * FROM device ORDER BY number", [&](const Statement& s) -> Result<void> {
     const auto kind = value_at<DeviceKind>(s, 3, db);
     if (!kind) return tl::unexpected(kind.error());
@@ -110,6 +118,14 @@ Result<void> read_devices(Database& db, Session& session) {
     d.width = optional_quantity<Millimetres>(s, 12);
     d.height = optional_quantity<Millimetres>(s, 13);
     if (!s.is_null(14)) d.mm_per_count = s.real(14);
+    if (format >= 2) {
+      if (!s.is_null(15)) {
+        DeviceClock& clock = d.clock.emplace();
+        clock.counter_bits = counter_bits(s.integer(15));
+        if (!s.is_null(16)) clock.nominal_tick = s.real(16);
+      }
+      d.hid_descriptor = s.blob(17);
+    }
     session.devices.push_back(std::move(device));
     return {};
   });
@@ -127,7 +143,7 @@ Result<void> read_devices(Database& db, Session& session) {
   });
 }
 
-Result<void> read_transfers(Database& db, Session& session) {
+Result<void> read_transfers(Database& db, int format, Session& session) {
   return each(db, "SELECT * FROM transfer ORDER BY number", [&](const Statement& s) -> Result<void> {
     const auto by = value_at<StampedBy>(s, 3, db);
     const auto direction = value_at<Direction>(s, 4, db);
@@ -135,47 +151,55 @@ Result<void> read_transfers(Database& db, Session& session) {
     if (!by) return tl::unexpected(by.error());
     if (!direction) return tl::unexpected(direction.error());
     if (!kind) return tl::unexpected(kind.error());
-    session.transfers.push_back({s.integer(1), {time_at(s, 2), *by, *direction, *kind, s.blob(6)}});
+    const auto endpoint = static_cast<std::uint8_t>(format >= 2 ? s.integer(7) : 0);
+    session.transfers.push_back({s.integer(1), {time_at(s, 2), *by, *direction, *kind, s.blob(6), endpoint}});
     return {};
   });
 }
 
-Result<void> read_pens(Database& db, Session& session) {
-  return each(db, "SELECT p.*, a.step FROM pen_sample p LEFT JOIN applied a USING(input) ORDER BY input",
-              [&](const Statement& s) -> Result<void> {
-                const auto by = value_at<StampedBy>(s, 3, db);
-                const auto tool = value_at<PenTool>(s, 6, db);
-                if (!by) return tl::unexpected(by.error());
-                if (!tool) return tl::unexpected(tool.error());
-                RecordedPen pen;
-                pen.order = s.integer(0);
-                pen.device = s.integer(1);
-                PenSample& p = pen.sample;
-                p.time = {time_at(s, 2), *by, static_cast<std::uint64_t>(s.integer(4)), std::nullopt};
-                if (!s.is_null(5)) p.time.device_tick = static_cast<std::uint64_t>(s.integer(5));
-                p.tool = *tool;
-                p.tool_serial = static_cast<std::uint64_t>(s.integer(7));
-                p.tool_id = static_cast<std::uint32_t>(s.integer(8));
-                p.in_proximity = s.integer(9) != 0;
-                p.in_contact = s.integer(10) != 0;
-                p.x_counts = s.real(11);
-                p.y_counts = s.real(12);
-                p.pressure = Fraction(s.real(13));
-                p.pressure_raw = static_cast<std::int32_t>(s.integer(14));
-                p.tilt_x = optional_quantity<Radians>(s, 15);
-                p.tilt_y = optional_quantity<Radians>(s, 16);
-                p.rotation = optional_quantity<Radians>(s, 17);
-                p.distance = optional_quantity<Fraction>(s, 18);
-                p.wheel = optional_quantity<Fraction>(s, 19);
-                p.buttons = static_cast<std::uint32_t>(s.integer(20));
-                p.after_gap = s.integer(21) != 0;
-                if (!s.is_null(22)) pen.applied = s.integer(22);
-                session.pens.push_back(pen);
-                return {};
-              });
+Cell cell_at(const Statement& row, int column, CellType type) {
+  if (row.is_null(column)) return {};
+  switch (type) {
+    case CellType::integer:
+      return row.integer(column);
+    case CellType::real:
+      return row.real(column);
+    default:
+      return row.text(column);
+  }
 }
 
-Result<void> read_actions(Database& db, Session& session) {
+Result<void> read_samples(Database& db, int format, Session& session) {
+  for (const SampleTable& table : sample_tables()) {
+    const bool pens = table.stream == "pen";
+    if (format < 2 && !pens) continue;
+    const std::string sql = pens ? "SELECT p.*, a.step FROM pen_sample p LEFT JOIN applied a USING(input)"
+                                 : "SELECT * FROM " + table.name;
+    auto r = each(db, sql + " ORDER BY input", [&](const Statement& s) -> Result<void> {
+      Sample sample = table.blank;
+      int at = 2;
+      for (const SampleColumn& column : table.columns)
+        if (const Cell cell = cell_at(s, at++, column.type); !column.set(sample, cell))
+          return failure(Fault::malformed,
+                         db.path().string() + " holds in " + table.name + "." + column.name +
+                             " what cannot stand there; it is damaged or comes from a newer fude");
+      if (pens) {
+        RecordedPen pen{s.integer(0), s.integer(1), std::get<PenSample>(std::move(sample)), std::nullopt};
+        if (!s.is_null(at)) pen.applied = s.integer(at);
+        session.pens.push_back(std::move(pen));
+      } else {
+        session.samples.push_back({s.integer(1), std::move(sample), s.integer(0)});
+      }
+      return {};
+    });
+    if (!r) return r;
+  }
+  std::stable_sort(session.samples.begin(), session.samples.end(),
+                   [](const RecordedSample& a, const RecordedSample& b) { return a.order < b.order; });
+  return {};
+}
+
+Result<void> read_actions(Database& db, int, Session& session) {
   return each(db, "SELECT x.*, a.step FROM action x LEFT JOIN applied a USING(input) ORDER BY input",
               [&](const Statement& s) -> Result<void> {
                 auto action = action_from(time_at(s, 1), s.text(2), s.text(3));
@@ -187,7 +211,32 @@ Result<void> read_actions(Database& db, Session& session) {
               });
 }
 
-Result<void> read_remarks(Database& db, Session& session) {
+Result<void> read_clock_fits(Database& db, int format, Session& session) {
+  if (format < 2) return {};
+  auto r = each(db, "SELECT * FROM clock_fit ORDER BY device, part, first_reading",
+                [&](const Statement& s) -> Result<void> {
+                  ClockLine line;
+                  line.first_reading = static_cast<std::size_t>(s.integer(2));
+                  line.since = time_at(s, 3);
+                  line.first_tick = static_cast<std::uint64_t>(s.integer(4));
+                  line.counter_bits = counter_bits(s.integer(5));
+                  line.offset = time_at(s, 6);
+                  line.tick_s = s.real(7);
+                  if (!s.is_null(8)) line.nominal_tick = s.real(8);
+                  line.readings = static_cast<std::uint64_t>(s.integer(10));
+                  line.outliers = static_cast<std::uint64_t>(s.integer(11));
+                  line.residual_s = {s.real(12), s.real(13), s.real(14)};
+                  session.clock_fits.push_back({s.integer(0), s.text(1), line});
+                  return {};
+                });
+  if (!r) return r;
+  return each(db, "SELECT * FROM passed_over ORDER BY rowid", [&](const Statement& s) -> Result<void> {
+    session.passed_over.push_back({s.integer(0), s.text(1), s.integer(2)});
+    return {};
+  });
+}
+
+Result<void> read_remarks(Database& db, int, Session& session) {
   auto r = each(db, "SELECT * FROM setting ORDER BY key", [&](const Statement& s) -> Result<void> {
     session.settings[s.text(0)] = s.text(1);
     return {};
@@ -220,9 +269,11 @@ Result<Session> read_session(const std::filesystem::path& path) {
   auto db = Database::open(path, OpenMode::read);
   if (!db) return tl::unexpected(db.error());
   Session session;
-  if (auto r = check_schema(*db); !r) return tl::unexpected(r.error());
-  for (auto* read : {read_devices, read_transfers, read_pens, read_actions, read_remarks}) {
-    if (auto r = read(*db, session); !r) return tl::unexpected(r.error());
+  const auto format = check_schema(*db);
+  if (!format) return tl::unexpected(format.error());
+  for (auto* read :
+       {read_devices, read_transfers, read_samples, read_actions, read_clock_fits, read_remarks}) {
+    if (auto r = read(*db, *format, session); !r) return tl::unexpected(r.error());
   }
   return session;
 }

@@ -64,6 +64,27 @@ struct Words<DeviceKind> {
        {DeviceKind::clock, "clock"},
        {DeviceKind::other, "other"}}};
 };
+template <>
+struct Words<PoseOrigin> {
+  static constexpr std::array<std::pair<PoseOrigin, std::string_view>, 4> table{
+      {{PoseOrigin::none, "none"},
+       {PoseOrigin::measured, "measured"},
+       {PoseOrigin::interpolated, "interpolated"},
+       {PoseOrigin::predicted, "predicted"}}};
+};
+template <>
+struct Words<PixelFormat> {
+  static constexpr std::array<std::pair<PixelFormat, std::string_view>, 4> table{
+      {{PixelFormat::grey, "grey"},
+       {PixelFormat::yuyv, "yuyv"},
+       {PixelFormat::mjpeg, "mjpeg"},
+       {PixelFormat::png, "png"}}};
+};
+template <>
+struct Words<ExposureMoment> {
+  static constexpr std::array<std::pair<ExposureMoment, std::string_view>, 3> table{
+      {{ExposureMoment::unknown, "unknown"}, {ExposureMoment::start, "start"}, {ExposureMoment::end, "end"}}};
+};
 
 template <class T>
 std::string_view find_word(T value) {
@@ -79,6 +100,9 @@ std::string_view word_for(Direction direction) { return find_word(direction); }
 std::string_view word_for(TransferKind kind) { return find_word(kind); }
 std::string_view word_for(PenTool tool) { return find_word(tool); }
 std::string_view word_for(DeviceKind kind) { return find_word(kind); }
+std::string_view word_for(PoseOrigin origin) { return find_word(origin); }
+std::string_view word_for(PixelFormat format) { return find_word(format); }
+std::string_view word_for(ExposureMoment moment) { return find_word(moment); }
 
 template <class T>
 std::optional<T> value_for(std::string_view word) {
@@ -91,6 +115,9 @@ template std::optional<Direction> value_for<Direction>(std::string_view);
 template std::optional<TransferKind> value_for<TransferKind>(std::string_view);
 template std::optional<PenTool> value_for<PenTool>(std::string_view);
 template std::optional<DeviceKind> value_for<DeviceKind>(std::string_view);
+template std::optional<PoseOrigin> value_for<PoseOrigin>(std::string_view);
+template std::optional<PixelFormat> value_for<PixelFormat>(std::string_view);
+template std::optional<ExposureMoment> value_for<ExposureMoment>(std::string_view);
 
 ActionWords words_for(const Action& action) {
   struct Visitor {

@@ -6,8 +6,10 @@
 #include <string_view>
 
 #include "signal/action.h"
+#include "signal/camera_frame.h"
 #include "signal/device.h"
 #include "signal/pen_sample.h"
+#include "signal/pose.h"
 #include "signal/result.h"
 #include "signal/transfer.h"
 
@@ -19,6 +21,9 @@ std::string_view word_for(Direction direction);
 std::string_view word_for(TransferKind kind);
 std::string_view word_for(PenTool tool);
 std::string_view word_for(DeviceKind kind);
+std::string_view word_for(PoseOrigin origin);
+std::string_view word_for(PixelFormat format);
+std::string_view word_for(ExposureMoment moment);
 
 // The value for a word; nothing for a word that the format does not have.
 template <class T>

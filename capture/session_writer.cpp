@@ -15,6 +15,17 @@ void bind_optional(Statement& s, const std::optional<double>& value) {
     s.bind_null();
 }
 
+void bind_cell(Statement& s, const Cell& cell) {
+  struct Binder {
+    Statement& to;
+    void operator()(std::monostate) { to.bind_null(); }
+    void operator()(std::int64_t number) { to.bind(number); }
+    void operator()(double number) { to.bind(number); }
+    void operator()(const std::string& text) { to.bind(std::string_view(text)); }
+  };
+  std::visit(Binder{s}, cell);
+}
+
 template <class Unit>
 std::optional<double> number(const std::optional<Quantity<Unit>>& quantity) {
   return quantity ? std::optional<double>(quantity->value) : std::nullopt;
@@ -34,33 +45,32 @@ Result<SessionWriter> SessionWriter::create(const std::filesystem::path& path) {
       "PRAGMA application_id=" +
       std::to_string(session_schema::application_id) +
       "; PRAGMA user_version=" + std::to_string(session_schema::format) + ";";
-  for (const char* table : session_schema::tables) head += std::string(table) + ";";
+  for (const std::string& table : session_schema::tables(session_schema::format)) head += table + ";";
   head += "INSERT INTO meta VALUES('complete','no'),('written_by','fude 0.1'); COMMIT;";
   if (auto r = db->run(head); !r) return tl::unexpected(r.error());
 
-  const char* texts[] = {
-      "INSERT OR REPLACE INTO setting VALUES(?,?)",
-      "INSERT OR REPLACE INTO snapshot VALUES(?,?)",
-      "INSERT INTO calibration(name,toml) VALUES(?,?)",
-      "INSERT INTO device VALUES(NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
-      "INSERT OR REPLACE INTO axis VALUES(?,?,?,?,?,?,?,?)",
-      "INSERT INTO transfer VALUES(NULL,?,?,?,?,?,?)",
-      "INSERT INTO pen_sample VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
-      "INSERT INTO action VALUES(?,?,?,?)",
-      "INSERT OR REPLACE INTO applied VALUES(?,?)",
-      "INSERT OR REPLACE INTO receipt VALUES(?,?,?,?)",
+  std::optional<Error> wrong;
+  const auto prepare = [&](const std::string& sql) {
+    auto statement = db->prepare(sql);
+    if (!statement && !wrong) wrong = statement.error();
+    return statement ? std::move(*statement) : Statement(nullptr);
   };
-  std::vector<Statement> prepared;
-  for (const char* text : texts) {
-    auto statement = db->prepare(text);
-    if (!statement) return tl::unexpected(statement.error());
-    prepared.push_back(std::move(*statement));
-  }
-  Statements statements{std::move(prepared[0]), std::move(prepared[1]), std::move(prepared[2]),
-                        std::move(prepared[3]), std::move(prepared[4]), std::move(prepared[5]),
-                        std::move(prepared[6]), std::move(prepared[7]), std::move(prepared[8]),
-                        std::move(prepared[9])};
-  return SessionWriter(std::move(*db), std::move(statements));
+  Statements to{.setting = prepare("INSERT OR REPLACE INTO setting VALUES(?,?)"),
+                .sheet = prepare("INSERT OR REPLACE INTO snapshot VALUES(?,?)"),
+                .calibration = prepare("INSERT INTO calibration(name,toml) VALUES(?,?)"),
+                .device = prepare("INSERT INTO device VALUES(NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+                .axis = prepare("INSERT OR REPLACE INTO axis VALUES(?,?,?,?,?,?,?,?)"),
+                .transfer = prepare("INSERT INTO transfer VALUES(NULL,?,?,?,?,?,?,?)"),
+                .action = prepare("INSERT INTO action VALUES(?,?,?,?)"),
+                .applied = prepare("INSERT OR REPLACE INTO applied VALUES(?,?)"),
+                .receipt = prepare("INSERT OR REPLACE INTO receipt VALUES(?,?,?,?)"),
+                .clock_fit = prepare("INSERT INTO clock_fit VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+                .passed_over = prepare("INSERT INTO passed_over VALUES(?,?,?)"),
+                .samples = {}};
+  for (const SampleTable& table : sample_tables())
+    to.samples.push_back(prepare(session_schema::insert(table)));
+  if (wrong) return tl::unexpected(*wrong);
+  return SessionWriter(std::move(*db), std::move(to));
 }
 
 Result<void> SessionWriter::write(Statement& statement) {
@@ -92,6 +102,12 @@ Result<DeviceNumber> SessionWriter::add_device(const DeviceDescription& d) {
   bind_optional(s, number(d.width));
   bind_optional(s, number(d.height));
   bind_optional(s, d.mm_per_count);
+  if (d.clock)
+    s.bind(std::int64_t{d.clock->counter_bits});
+  else
+    s.bind_null();
+  bind_optional(s, d.clock ? d.clock->nominal_tick : std::nullopt);
+  s.bind(std::span<const std::byte>(d.hid_descriptor));
   if (auto r = write(s); !r) return tl::unexpected(r.error());
   const DeviceNumber device = db_.last_row();
   for (const AxisRange& a : d.axes) {
@@ -110,24 +126,14 @@ Result<void> SessionWriter::add_transfer(DeviceNumber device, const Transfer& t)
       .bind(std::int64_t{t.time.time_since_epoch().count()})
       .bind(word_for(t.stamped_by));
   to_.transfer.bind(word_for(t.direction)).bind(word_for(t.kind)).bind(std::span<const std::byte>(t.payload));
-  return write(to_.transfer);
+  return write(to_.transfer.bind(std::int64_t{t.endpoint}));
 }
 
-Result<InputOrder> SessionWriter::add_pen(DeviceNumber device, const PenSample& p) {
+Result<InputOrder> SessionWriter::add_sample(DeviceNumber device, const Sample& sample) {
   const InputOrder input = next_input_++;
-  Statement& s = to_.pen;
-  s.bind(input).bind(device).bind(std::int64_t{p.time.host.time_since_epoch().count()});
-  s.bind(word_for(p.time.stamped_by)).bind(static_cast<std::int64_t>(p.time.sequence));
-  if (p.time.device_tick)
-    s.bind(static_cast<std::int64_t>(*p.time.device_tick));
-  else
-    s.bind_null();
-  s.bind(word_for(p.tool)).bind(static_cast<std::int64_t>(p.tool_serial)).bind(std::int64_t{p.tool_id});
-  s.bind(std::int64_t{p.in_proximity}).bind(std::int64_t{p.in_contact}).bind(p.x_counts).bind(p.y_counts);
-  s.bind(p.pressure.value).bind(std::int64_t{p.pressure_raw});
-  for (const auto& angle : {p.tilt_x, p.tilt_y, p.rotation}) bind_optional(s, number(angle));
-  for (const auto& fraction : {p.distance, p.wheel}) bind_optional(s, number(fraction));
-  s.bind(std::int64_t{p.buttons}).bind(std::int64_t{p.after_gap});
+  Statement& s = to_.samples[sample.index()];
+  s.bind(input).bind(device);
+  for (const SampleColumn& column : sample_tables()[sample.index()].columns) bind_cell(s, column.get(sample));
   if (auto r = write(s); !r) return tl::unexpected(r.error());
   return input;
 }
@@ -146,6 +152,25 @@ Result<void> SessionWriter::applied(InputOrder input, Step step) {
 
 Result<void> SessionWriter::add_receipt(const Receipt& r) {
   return write(to_.receipt.bind(r.device).bind(r.expected).bind(r.received).bind(r.dropped));
+}
+
+Result<void> SessionWriter::add_clock_fit(const RecordedClockFit& fit) {
+  const ClockLine& line = fit.line;
+  Statement& s = to_.clock_fit;
+  s.bind(fit.device).bind(fit.part).bind(static_cast<std::int64_t>(line.first_reading));
+  s.bind(std::int64_t{line.since.time_since_epoch().count()})
+      .bind(static_cast<std::int64_t>(line.first_tick));
+  s.bind(std::int64_t{line.counter_bits}).bind(std::int64_t{line.offset.time_since_epoch().count()});
+  s.bind(line.tick_s);
+  bind_optional(s, line.nominal_tick);
+  bind_optional(s, line.drift_ppm());
+  s.bind(static_cast<std::int64_t>(line.readings)).bind(static_cast<std::int64_t>(line.outliers));
+  s.bind(line.residual_s.p50).bind(line.residual_s.p99).bind(line.residual_s.largest);
+  return write(s);
+}
+
+Result<void> SessionWriter::add_passed_over(const PassedOver& passed) {
+  return write(to_.passed_over.bind(passed.device).bind(passed.what).bind(passed.count));
 }
 
 Result<void> SessionWriter::flush() {

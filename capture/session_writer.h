@@ -26,10 +26,12 @@ class SessionWriter {
   Result<void> add_transfer(DeviceNumber device, const Transfer& transfer);
 
   // The order of the input among all inputs, for `applied`.
-  Result<InputOrder> add_pen(DeviceNumber device, const PenSample& sample);
+  Result<InputOrder> add_sample(DeviceNumber device, const Sample& sample);
   Result<InputOrder> add_action(const Action& action);
   Result<void> applied(InputOrder input, Step step);
   Result<void> add_receipt(const Receipt& receipt);
+  Result<void> add_clock_fit(const RecordedClockFit& fit);
+  Result<void> add_passed_over(const PassedOver& passed);
 
   // Puts what was added so far on the disk; call at least every 100 ms while recording.
   Result<void> flush();
@@ -39,7 +41,9 @@ class SessionWriter {
 
  private:
   struct Statements {
-    Statement setting, sheet, calibration, device, axis, transfer, pen, action, applied, receipt;
+    Statement setting, sheet, calibration, device, axis, transfer, action, applied, receipt, clock_fit,
+        passed_over;
+    std::vector<Statement> samples;  // by the index of their kind
   };
   SessionWriter(Database db, Statements statements) : db_(std::move(db)), to_(std::move(statements)) {}
   Result<void> write(Statement& statement);

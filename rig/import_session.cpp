@@ -31,7 +31,7 @@ Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& reco
   const auto number = out.add_device(device);
   if (!number) return tl::unexpected(number.error());
   for (const PenSample& sample : recording.samples) {
-    if (auto r = out.add_pen(*number, sample); !r) return tl::unexpected(r.error());
+    if (auto r = out.add_sample(*number, sample); !r) return tl::unexpected(r.error());
     stream.samples += sample.in_proximity;
   }
   PenDecoder decoder(device);
@@ -41,7 +41,7 @@ Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& reco
     if (auto r = out.add_transfer(*number, transfer); !r) return tl::unexpected(r.error());
     if (stream.raw_only) continue;
     if (const auto sample = decoder.decode(transfer))
-      if (auto r = out.add_pen(*number, *sample); !r) return tl::unexpected(r.error());
+      if (auto r = out.add_sample(*number, *sample); !r) return tl::unexpected(r.error());
   }
   if (text) {
     bool touching = false;

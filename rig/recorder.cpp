@@ -23,8 +23,10 @@ class Recorder::Writing {
   Result<void> operator()(const RecordedCalibration& c) { return out_.add_calibration(c); }
   Result<void> operator()(const RecordedSheet& s) { return out_.set_sheet(s); }
   Result<void> operator()(const RecordedPen& p) {
-    return with_step(out_.add_pen(p.device, p.sample), p.applied);
+    return with_step(out_.add_sample(p.device, p.sample), p.applied);
   }
+  Result<void> operator()(const RecordedSample& s) { return drop_value(out_.add_sample(s.device, s.sample)); }
+  Result<void> operator()(const RecordedClockFit& f) { return out_.add_clock_fit(f); }
   Result<void> operator()(const RecordedAction& a) { return with_step(out_.add_action(a.action), a.applied); }
 
   Result<void> flush() { return out_.flush(); }

@@ -22,8 +22,9 @@ struct SessionSetting {
   std::string key;
   std::string value;
 };
-using SessionRecord = std::variant<SessionSetting, DeviceDescription, RecordedTransfer, RecordedPen,
-                                   RecordedAction, Receipt, RecordedCalibration, RecordedSheet>;
+using SessionRecord =
+    std::variant<SessionSetting, DeviceDescription, RecordedTransfer, RecordedPen, RecordedSample,
+                 RecordedAction, Receipt, RecordedClockFit, RecordedCalibration, RecordedSheet>;
 
 class Recorder {
  public:

@@ -110,21 +110,22 @@ Timestamp ClockLine::host(std::uint64_t tick, Timestamp near) const {
   return std::abs(s) < farthest_s ? offset + nanoseconds(s) : near;
 }
 
-std::optional<double> ClockLine::drift_ppm(const ClockFitOptions& options) const {
-  if (!options.nominal_tick || !(*options.nominal_tick > 0) || !(tick_s > 0)) return std::nullopt;
-  return (tick_s / *options.nominal_tick - 1) * 1e6;
+std::optional<double> ClockLine::drift_ppm() const {
+  if (!nominal_tick || !(*nominal_tick > 0) || !(tick_s > 0)) return std::nullopt;
+  return (tick_s / *nominal_tick - 1) * 1e6;
 }
 
 double ClockFitter::jump_s() const {
   const double jump = std::max(seconds(options_.smallest_jump), jump_spreads * spread_s_);
-  if (options_.counter_bits >= 64) return jump;
+  if (options_.clock.counter_bits >= 64) return jump;
   // A counter that wraps is never further off the line than half its turn.
-  return std::min(jump, line_.tick_s * static_cast<double>(std::uint64_t{1} << options_.counter_bits) / 4);
+  return std::min(jump,
+                  line_.tick_s * static_cast<double>(std::uint64_t{1} << options_.clock.counter_bits) / 4);
 }
 
 bool ClockFitter::strange(const ClockReading& reading) const {
-  if (line_.readings < settled_readings && !options_.nominal_tick)
-    return options_.counter_bits >= 64 && reading.tick < young_.back().tick;
+  if (line_.readings < settled_readings && !options_.clock.nominal_tick)
+    return options_.clock.counter_bits >= 64 && reading.tick < young_.back().tick;
   return std::abs(seconds(reading.host - line_.host(reading.tick, reading.host))) > jump_s() ||
          std::abs(line_.tick_s * static_cast<double>(line_.ticks(reading.tick, reading.host))) > 4e9;
 }
@@ -156,8 +157,9 @@ void ClockFitter::restart(std::span<const ClockReading> readings) {
   line_.first_reading = seen_ - (readings.size() - 1);
   line_.since = line_.offset = readings.front().host;
   line_.first_tick = readings.front().tick;
-  line_.counter_bits = options_.counter_bits;
-  line_.tick_s = options_.nominal_tick ? *options_.nominal_tick : tick_s;
+  line_.counter_bits = options_.clock.counter_bits;
+  line_.nominal_tick = options_.clock.nominal_tick;
+  line_.tick_s = options_.clock.nominal_tick ? *options_.clock.nominal_tick : tick_s;
   young_.clear();
   residuals_.clear();
   next_residual_ = 0;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "signal/device.h"
 #include "signal/timestamp.h"
 
 namespace fude {
@@ -19,8 +20,7 @@ struct ClockReading {
 };
 
 struct ClockFitOptions {
-  int counter_bits = 64;               // the counter wraps after 8, 16 or 32 bits; 64: never
-  std::optional<double> nominal_tick;  // seconds a tick, as the maker states it
+  DeviceClock clock;
   // Readings off the line by more than this, and by more than ten times the spread, are taken for a restart
   // once four or more in a row, over twice this time, agree with each other on another line.
   Duration smallest_jump = std::chrono::milliseconds(50);
@@ -43,6 +43,7 @@ struct ClockLine {
   int counter_bits = 64;
   Timestamp offset{};  // where the line has first_tick
   double tick_s = 0;   // 0 where fewer than two ticks were seen and no maker states it
+  std::optional<double> nominal_tick;
   std::uint64_t readings = 0;
   std::uint64_t outliers = 0;
   ResidualQuantiles residual_s;
@@ -52,7 +53,7 @@ struct ClockLine {
   std::int64_t ticks(std::uint64_t tick, Timestamp near) const;
   Timestamp host(std::uint64_t tick, Timestamp near) const;
   // Parts per million by which the device's clock is slow; none without the maker's figure.
-  std::optional<double> drift_ppm(const ClockFitOptions& options) const;
+  std::optional<double> drift_ppm() const;
 };
 
 struct FittedReading {

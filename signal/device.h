@@ -2,6 +2,7 @@
 // returns under another node is the same device.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,6 +40,13 @@ struct AxisRange {
   bool operator==(const AxisRange&) const = default;
 };
 
+// A device's own counter of time or of reports.
+struct DeviceClock {
+  int counter_bits = 64;               // it wraps after 8, 16 or 32 bits; 64: never
+  std::optional<double> nominal_tick;  // seconds a tick, as the maker states it
+  bool operator==(const DeviceClock&) const = default;
+};
+
 struct DeviceDescription {
   std::string id;    // "056a:0304:SERIAL"; the serial may be empty
   std::string name;  // as the device calls itself
@@ -56,6 +64,8 @@ struct DeviceDescription {
   std::optional<Millimetres> height;
   // Millimetres per count, where the source of the recording fixes it (text formats).
   std::optional<double> mm_per_count;
+  std::optional<DeviceClock> clock;       // none: its samples carry no ticks
+  std::vector<std::byte> hid_descriptor;  // the HID report descriptor; empty where there is none
   bool operator==(const DeviceDescription&) const = default;
 };
 

@@ -39,6 +39,8 @@ DeviceDescription tablet() {
   d.keys = {320, 330};
   d.axes = {{0, 0, 59552, 4, 0, 200, 0}, {24, 0, 1023, 0, 0, 0, 0}};
   d.width = Millimetres(297.76);
+  d.clock = DeviceClock{16, 1e-3};
+  d.hid_descriptor = {std::byte{5}, std::byte{0x0d}};
   return d;
 }
 
@@ -56,16 +58,37 @@ PenSample pen(std::int64_t ns) {
   return p;
 }
 
+ClockLine fitted() {
+  ClockLine line;
+  line.first_reading = 40;
+  line.since = Timestamp(Duration(77));
+  line.first_tick = 0xfffffffffffffff0;
+  line.counter_bits = 16;
+  line.offset = Timestamp(Duration(78));
+  line.tick_s = 1.0 / 3;
+  line.nominal_tick = 0.25;
+  line.readings = 100;
+  line.outliers = 3;
+  line.residual_s = {1e-6, 2e-6, 1.0 / 7};
+  return line;
+}
+
 void write_all(SessionWriter& out) {
   const DeviceNumber device = out.add_device(tablet()).value();
-  Transfer t{Timestamp(Duration(5)), StampedBy::kernel, Direction::from_device, TransferKind::evdev_frame,
-             pack_events(std::vector<EvdevEvent>{{3, 0, 9}, {0, 0, 0}})};
+  Transfer t{Timestamp(Duration(5)),
+             StampedBy::kernel,
+             Direction::from_device,
+             TransferKind::evdev_frame,
+             pack_events(std::vector<EvdevEvent>{{3, 0, 9}, {0, 0, 0}}),
+             0x81};
   ASSERT_TRUE(out.add_transfer(device, t));
-  const InputOrder a = out.add_pen(device, pen(5)).value();
+  const InputOrder a = out.add_sample(device, pen(5)).value();
   ASSERT_TRUE(out.applied(a, 3));
   ASSERT_TRUE(out.add_action({Timestamp(Duration(6)), LoadBrush{0.5F, {1, 0, 0.25F, 2}}}));
   ASSERT_TRUE(out.set("brush", "round-goat"));
   ASSERT_TRUE(out.add_receipt({device, 10, 9, 1}));
+  ASSERT_TRUE(out.add_clock_fit({device, "probe", fitted()}));
+  ASSERT_TRUE(out.add_passed_over({device, "report 12", 3}));
 }
 
 TEST_F(SessionFile, EverythingComesBack) {
@@ -89,6 +112,13 @@ TEST_F(SessionFile, EverythingComesBack) {
   EXPECT_EQ(in.settings.at("brush"), "round-goat");
   ASSERT_EQ(in.receipts.size(), 1U);
   EXPECT_EQ(in.receipts[0].dropped, 1);
+  EXPECT_EQ(in.transfers[0].transfer.endpoint, 0x81);
+  ASSERT_EQ(in.clock_fits.size(), 1U);
+  EXPECT_EQ(in.clock_fits[0].part, "probe");
+  EXPECT_EQ(in.clock_fits[0].line, fitted());
+  ASSERT_EQ(in.passed_over.size(), 1U);
+  EXPECT_EQ(in.passed_over[0].what, "report 12");
+  EXPECT_EQ(in.passed_over[0].count, 3);
 }
 
 TEST_F(SessionFile, NothingFlushedIsLostWhenTheProgramIsKilled) {
@@ -96,9 +126,9 @@ TEST_F(SessionFile, NothingFlushedIsLostWhenTheProgramIsKilled) {
   if (child == 0) {
     SessionWriter out = SessionWriter::create(path()).value();
     const DeviceNumber device = out.add_device(tablet()).value();
-    for (int i = 0; i < 100; ++i) (void)out.add_pen(device, pen(i));
+    for (int i = 0; i < 100; ++i) (void)out.add_sample(device, pen(i));
     (void)out.flush();
-    for (int i = 100; i < 200; ++i) (void)out.add_pen(device, pen(i));
+    for (int i = 100; i < 200; ++i) (void)out.add_sample(device, pen(i));
     _exit(0);  // no destructor, no close
   }
   int status = 0;

@@ -42,11 +42,11 @@ double off_s(Timestamp fitted, double truth_s) { return seconds(fitted - at(trut
 
 TEST(ClockFit, APerfectClockIsFoundToTheNanosecond) {
   const Device device{.tick_s = 1.000123e-3};
-  const ClockFitOptions options{.nominal_tick = 1e-3};
+  const ClockFitOptions options{.clock = {.nominal_tick = 1e-3}};
   const ClockFit fit = fit_clock(device.read(1000), options);
   ASSERT_EQ(fit.lines.size(), 1U);
   EXPECT_NEAR(fit.lines[0].tick_s, device.tick_s, 1e-13);
-  EXPECT_NEAR(*fit.lines[0].drift_ppm(options), 123, 1e-3);
+  EXPECT_NEAR(*fit.lines[0].drift_ppm(), 123, 1e-3);
   EXPECT_NEAR(off_s(fit.lines[0].offset, device.start_s), 0, 2e-9);
   EXPECT_LT(fit.lines[0].residual_s.largest, 2e-9);
   EXPECT_EQ(fit.lines[0].outliers, 0U);
@@ -55,11 +55,11 @@ TEST(ClockFit, APerfectClockIsFoundToTheNanosecond) {
 TEST(ClockFit, OneSidedDelaysLeaveTheDriftAndMoveTheOffsetByTheirMiddle) {
   // Even delays of 0 to 4 ms: standard deviation 1.15 ms, so the slope's is 1.15 ms · √12 / (√N · 100 s).
   const Device device{.tick_s = 1e-3 * (1 - 50e-6), .delay_s = 4e-3};
-  const ClockFitOptions options{.nominal_tick = 1e-3};
+  const ClockFitOptions options{.clock = {.nominal_tick = 1e-3}};
   const ClockFit fit = fit_clock(device.read(10'000), options);
   ASSERT_EQ(fit.lines.size(), 1U);
   const double slope_deviation_ppm = 4e-3 / 100.0 / 100.0 * 1e6;
-  EXPECT_NEAR(*fit.lines[0].drift_ppm(options), -50, 4 * slope_deviation_ppm);
+  EXPECT_NEAR(*fit.lines[0].drift_ppm(), -50, 4 * slope_deviation_ppm);
   EXPECT_NEAR(off_s(fit.lines[0].offset, device.start_s), 2e-3, 1e-4);
   EXPECT_NEAR(fit.lines[0].residual_s.p50, 1e-3, 1e-4);
   EXPECT_LT(fit.lines[0].residual_s.largest, 2.2e-3);
@@ -88,7 +88,7 @@ TEST(ClockFit, ARestartedClockBeginsALineOfItsOwn) {
   const std::vector<ClockReading> later = device.read(500, 2);
   readings.insert(readings.end(), later.begin(), later.end());
   for (const int bits : {64, 32}) {
-    const ClockFit fit = fit_clock(readings, {.counter_bits = bits, .nominal_tick = 1e-3});
+    const ClockFit fit = fit_clock(readings, {.clock = {.counter_bits = bits, .nominal_tick = 1e-3}});
     ASSERT_EQ(fit.lines.size(), 2U) << bits;
     EXPECT_EQ(fit.lines[1].first_reading, 1000U);
     EXPECT_EQ(fit.lines[1].first_tick, 7U);
@@ -121,7 +121,7 @@ TEST(ClockFit, CountersOf8And16And32BitsAreUnwound) {
     std::vector<ClockReading> readings = device.read(6000);
     // A loss of more than one turn of the smallest counter.
     readings.erase(readings.begin() + 3000, readings.begin() + 3300);
-    const ClockFit fit = fit_clock(readings, {.counter_bits = c.bits});
+    const ClockFit fit = fit_clock(readings, {.clock = {.counter_bits = c.bits}});
     ASSERT_EQ(fit.lines.size(), 1U) << c.bits;
     EXPECT_NEAR(fit.lines[0].tick_s / c.tick_s, 1, 1e-5) << c.bits;
     EXPECT_LT(fit.lines[0].residual_s.largest, 0.7e-3) << c.bits;
@@ -134,15 +134,15 @@ TEST(ClockFit, OneReadingAtATimeEndsWhereTheWholeStreamDoes) {
   const Device device{.tick_s = 1e-3 * (1 + 80e-6), .delay_s = 2e-3};
   std::vector<ClockReading> readings = device.read(20'000);
   for (std::size_t i = 500; i < readings.size(); i += 500) readings[i].host += std::chrono::milliseconds(30);
-  const ClockFitOptions options{.nominal_tick = 1e-3};
+  const ClockFitOptions options{.clock = {.nominal_tick = 1e-3}};
   ClockFitter fitter(options);
   std::size_t outliers = 0;
   for (const ClockReading& r : readings) outliers += fitter.add(r).outlier;
   const ClockFit whole = fit_clock(readings, options);
   ASSERT_EQ(fitter.lines().size(), 1U);
   const ClockLine line = fitter.lines()[0];
-  EXPECT_NEAR(*line.drift_ppm(options), *whole.lines[0].drift_ppm(options), 0.5);
-  EXPECT_NEAR(*line.drift_ppm(options), 80, 1);
+  EXPECT_NEAR(*line.drift_ppm(), *whole.lines[0].drift_ppm(), 0.5);
+  EXPECT_NEAR(*line.drift_ppm(), 80, 1);
   EXPECT_LT(
       std::abs(seconds(line.host(readings.back().tick, readings.back().host) - whole.readings.back().fitted)),
       1e-4);
@@ -156,7 +156,7 @@ TEST(ClockFit, TimesAndTicksOfAnyKindAreSafe) {
     std::vector<ClockReading> readings;
     for (int i = 0; i < 3000; ++i)
       readings.push_back({Timestamp(Duration(static_cast<std::int64_t>(random() >> 2))), random()});
-    const ClockFit fit = fit_clock(readings, {.counter_bits = bits});
+    const ClockFit fit = fit_clock(readings, {.clock = {.counter_bits = bits}});
     EXPECT_EQ(fit.readings.size(), readings.size());
     for (const ClockLine& line : fit.lines) EXPECT_TRUE(std::isfinite(line.tick_s));
   }
