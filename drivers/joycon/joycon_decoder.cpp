@@ -97,12 +97,14 @@ void JoyconDecoder::decode(const Transfer& transfer, Decoded& out) {
     case TransferKind::hid_report:
       return take_report(transfer.payload, transfer, out);
     case TransferKind::serial:
-      counts_.malformed +=
-          rail_.feed(transfer.payload, longest_rail_packet, fit_rail_packet, [&](Bytes packet) {
-            if (const Bytes report = rail_report(packet); !report.empty())
-              return take_report(report, transfer, out);
-            ++counts_.unknown;
-          });
+      counts_.malformed += rail_
+                               .feed(transfer.payload, longest_rail_packet, fit_rail_packet,
+                                     [&](Bytes packet) {
+                                       if (const Bytes report = rail_report(packet); !report.empty())
+                                         return take_report(report, transfer, out);
+                                       ++counts_.unknown;
+                                     })
+                               .damaged;
       return;
     default:
       return;

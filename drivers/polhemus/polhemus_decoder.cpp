@@ -85,13 +85,16 @@ void PolhemusDecoder::decode(const Transfer& transfer, Decoded& out) {
     return;
   }
   if (transfer.kind != TransferKind::serial && transfer.kind != TransferKind::usb_bulk) return;
-  counts_.malformed += stream_.feed(
-      transfer.payload, longest_record, [this](Bytes bytes) { return fit_record(bytes, options_.layout); },
-      [&](Bytes frame) {
-        if (const auto record = read_record(frame, options_.layout))
-          return take_record(*record, transfer, out);
-        ++counts_.unknown;
-      });
+  counts_.malformed += stream_
+                           .feed(
+                               transfer.payload, longest_record,
+                               [this](Bytes bytes) { return fit_record(bytes, options_.layout); },
+                               [&](Bytes frame) {
+                                 if (const auto record = read_record(frame, options_.layout))
+                                   return take_record(*record, transfer, out);
+                                 ++counts_.unknown;
+                               })
+                           .damaged;
 }
 
 // A cycle is all stations once: it begins with another frame number, or where there is none, with a
