@@ -15,8 +15,7 @@ std::optional<Head> read_head(Bytes report) {
   head.timer = octet(report, 1);
   head.battery = (level >> 1) / 4.0;
   head.charging = (level & 1) != 0;
-  head.buttons =
-      octet(report, 3) | octet(report, 4) << 8 | static_cast<std::uint32_t>(octet(report, 5)) << 16;
+  for (std::size_t i = 0; i < 3; ++i) head.buttons |= std::uint32_t{octet(report, 3 + i)} << (8 * i);
   return head;
 }
 
