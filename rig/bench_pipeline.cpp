@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "rig/live_painting.h"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr int cells_a_side = 512;
 constexpr std::chrono::milliseconds between_reports{5};
+constexpr int reports_a_picture = 3;
+constexpr double in_the_air_s = 0.1;
 
 // Water over the whole sheet, more than it evaporates in the time of the bench.
 InkEvent flood(double side_mm) {
@@ -26,12 +29,14 @@ InkEvent flood(double side_mm) {
   return {.at = {}, .id = 0, .what = std::move(deposit)};
 }
 
+// A stroke a second, each with its snapshot.
 PenSample circling(double t_s, double side_mm, double mm_per_count) {
   const elementary::SineCosine turn = elementary::sine_cosine(4 * t_s);
   PenSample pen;
   pen.tool = PenTool::pen;
-  pen.in_proximity = pen.in_contact = true;
-  pen.pressure = Fraction(0.5);
+  pen.in_proximity = true;
+  pen.in_contact = t_s - std::floor(t_s) >= in_the_air_s;
+  pen.pressure = Fraction(pen.in_contact ? 0.5 : 0);
   pen.x_counts = 0.5 * side_mm * (1 + 0.6 * turn.cosine) / mm_per_count;
   pen.y_counts = 0.5 * side_mm * (1 + 0.6 * turn.sine) / mm_per_count;
   return pen;
@@ -65,6 +70,7 @@ Result<PipelineBench> bench_pipeline(const PaintingSetup& wanted, double seconds
     pen.time.host = Timestamp(std::chrono::duration_cast<Duration>(Clock::now().time_since_epoch()));
     pen.time.stamped_by = StampedBy::arrival;
     live.pen({1, pen, mapping});
+    if (i % reports_a_picture == 0) (void)live.take_changes();  // as a window does
   }
   const Painting& done = live.stop().painting();
   std::vector<double> microseconds;

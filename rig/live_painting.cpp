@@ -1,5 +1,8 @@
 #include "rig/live_painting.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 #include <chrono>
 #include <new>
@@ -14,8 +17,10 @@ using LiveClock = std::chrono::steady_clock;  // CLOCK_MONOTONIC: the clock of t
 constexpr std::size_t snapshots_kept = 8;
 constexpr std::size_t latencies_kept = 1'000'000;
 constexpr std::chrono::milliseconds between_pictures{16};
-// Reading the paper for the window may take this share of the painting's time.
-constexpr int reading_share = 5;
+// Cells that are read at once for the window: longer reading would keep the brush waiting for an answer.
+constexpr int cells_a_picture = 1 << 16;
+// Where the ink is behind, how soon to look whether it has come up.
+constexpr std::chrono::microseconds soon{500};
 // A machine that is further behind than this lets simulated time wait instead of running after it.
 constexpr double patience_s = 0.25;
 
@@ -34,6 +39,14 @@ Timestamp now() {
   return Timestamp(std::chrono::duration_cast<Duration>(LiveClock::now().time_since_epoch()));
 }
 
+// The ink's threads may keep every processor busy, and some kernels let them go on until the next tick,
+// 4 ms away. Where the user may ask for it (`ulimit -r`, as for sound), the brush comes first: it runs for
+// less than a millisecond at a time.
+void ask_for_precedence() {
+  const sched_param lowest{.sched_priority = 1};
+  (void)pthread_setschedparam(pthread_self(), SCHED_RR | SCHED_RESET_ON_FORK, &lowest);
+}
+
 double milliseconds(Duration d) { return seconds(d) * 1e3; }
 
 }  // namespace
@@ -42,7 +55,10 @@ LivePainting::LivePainting(Painting painting, const PenReach& reach, Recorder* r
     : history_(std::move(painting), snapshots_kept),
       reach_(reach),
       recorder_(recorder),
-      thread_([this] { serve(); }) {}
+      thread_([this] { serve(); }) {
+  std::unique_lock lock(mutex_);
+  begun_.wait(lock, [this] { return started_ || failed_; });
+}
 
 LivePainting::~LivePainting() { stop(); }
 
@@ -66,6 +82,7 @@ void LivePainting::apply(const LiveInput& input) {
   const Step step = history_.step();
   if (const auto* action = std::get_if<Action>(&input)) {
     history_.apply(*action);
+    const std::lock_guard lock(mutex_);
     unshown_ = {0, 0, history_.painting().ink().columns(), history_.painting().ink().rows()};
     if (recorder_) recorder_->add(RecordedAction{0, *action, step});
     return;
@@ -81,7 +98,7 @@ void LivePainting::apply(const LiveInput& input) {
 }
 
 void LivePainting::publish() {
-  const Painting& painting = history_.painting();
+  Painting& painting = history_.painting();
   LiveStatus status;
   status.step = history_.step();
   status.tuft = painting.brush(PenEnd::tip).shape();
@@ -94,15 +111,32 @@ void LivePainting::publish() {
     status.pen = status_.pen;
     status.nib_mm = status_.nib_mm;
     status_ = std::move(status);
-    if (changes_) return;  // the window has not taken the last ones yet
+    if (changes_ || looking_) return;  // the window has not taken the last ones yet
+    looking_ = true;
   }
-  // What was wet at the last picture may have dried since.
-  const CellRect wet = painting.ink().active_rect();
-  const CellRect cells = united(unshown_, wet);
-  unshown_ = wet;
-  if (empty(cells)) return;
-  InkRegion region = painting.ink().read(cells);
+  painting.look_later([this](const Ink& ink) { look(ink); });
+}
+
+// On the ink's thread.
+void LivePainting::look(const Ink& ink) {
+  const CellRect wet = ink.active_rect();
+  CellRect cells;
+  {
+    const std::lock_guard lock(mutex_);
+    // What was wet when the last pass over the sheet began may have dried since.
+    if (empty(unshown_))
+      unshown_ = united(std::exchange(was_wet_, wet), wet);
+    else
+      was_wet_ = united(was_wet_, wet);
+    cells = unshown_;
+    if (!empty(cells)) cells.rows = std::min(cells.rows, std::max(1, cells_a_picture / cells.columns));
+    unshown_.bottom += cells.rows;
+    unshown_.rows -= cells.rows;
+  }
+  std::optional<InkRegion> region;
+  if (!empty(cells)) region = ink.read(cells);
   const std::lock_guard lock(mutex_);
+  looking_ = false;
   changes_ = std::move(region);
 }
 
@@ -112,9 +146,20 @@ void LivePainting::serve() try { paint(); } catch (const std::bad_alloc&) {
   fail({Fault::unsupported, error.what()});
 }
 
+void LivePainting::begin() {
+  {
+    const std::lock_guard lock(mutex_);
+    started_ = true;
+  }
+  begun_.notify_one();
+}
+
 void LivePainting::fail(Error error) {
-  const std::lock_guard lock(mutex_);
-  failed_ = std::move(error);
+  {
+    const std::lock_guard lock(mutex_);
+    failed_ = std::move(error);
+  }
+  begun_.notify_one();
 }
 
 std::optional<Error> LivePainting::failed() const {
@@ -123,17 +168,24 @@ std::optional<Error> LivePainting::failed() const {
 }
 
 void LivePainting::paint() {
+  ask_for_precedence();
   const double step_s = history_.painting().step_s();
+  // The memory of the first snapshot and the first pictures is touched before the clock starts.
+  history_.painting().look_later([this](const Ink& ink) { look(ink); });
+  (void)history_.painting().ink();
+  begin();
   LiveClock::time_point start = LiveClock::now();
   LiveClock::time_point next_picture = start;
   std::vector<LiveInput> inputs;
   while (true) {
     const auto due = start + std::chrono::duration_cast<LiveClock::duration>(std::chrono::duration<double>(
                                  static_cast<double>(history_.step() + 1) * step_s));
+    const bool behind = history_.painting().behind() > 0;
     bool stopping = false;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, due, [this] { return stopping_ || !queue_.empty(); });
+      wake_.wait_until(lock, behind ? std::max(due, LiveClock::now() + soon) : due,
+                       [this] { return stopping_ || !queue_.empty(); });
       stopping = stopping_;
       std::swap(inputs, queue_);
     }
@@ -142,18 +194,19 @@ void LivePainting::paint() {
     if (stopping) return;
 
     const auto before = LiveClock::now();
-    if (before >= due) {
+    if (before >= due && history_.painting().behind() == 0) {
+      const std::vector<double> took = history_.painting().step_ms();
+      if (!took.empty()) {
+        const std::lock_guard lock(mutex_);
+        status_.step_ms = took.back();
+      }
       history_.advance_to(history_.step() + 1);
-      const auto after = LiveClock::now();
-      const std::lock_guard lock(mutex_);
-      status_.step_ms = std::chrono::duration<double, std::milli>(after - before).count();
     }
     const double behind_s = std::chrono::duration<double>(before - due).count();
     if (behind_s > patience_s) start += before - due;
     if (before >= next_picture) {
       publish();
-      next_picture =
-          std::max(before + between_pictures, before + reading_share * (LiveClock::now() - before));
+      next_picture = before + between_pictures;
     }
   }
 }
@@ -176,6 +229,12 @@ History& LivePainting::stop() {
     }
     wake_.notify_one();
     thread_.join();
+    // A look at the paper may still be on its way.
+    try {
+      (void)history_.painting().ink();
+    } catch (const std::exception& error) {
+      if (!failed_) failed_ = Error{Fault::unsupported, error.what()};
+    }
   }
   return history_;
 }

@@ -40,7 +40,7 @@ struct LiveStatus {
 
 class LivePainting {
  public:
-  // `recorder` may be null; it must outlive the painting.
+  // `recorder` may be null; it must outlive the painting. Returns when the clock of the painting runs.
   LivePainting(Painting painting, const PenReach& reach, Recorder* recorder);
   ~LivePainting();
   LivePainting(const LivePainting&) = delete;
@@ -69,20 +69,26 @@ class LivePainting {
   using LiveInput = std::variant<LivePen, Action>;
   void serve();
   void paint();
+  void begin();
   void fail(Error error);
   void apply(const LiveInput& input);
   void publish();
+  void look(const Ink& ink);
 
   History history_;
   PenReach reach_;
   Recorder* recorder_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
+  std::condition_variable begun_;
+  bool started_ = false;
   std::vector<LiveInput> queue_;
   LiveStatus status_;
   std::optional<Error> failed_;
   std::optional<InkRegion> changes_;
-  CellRect unshown_;
+  bool looking_ = false;
+  CellRect unshown_;  // of the present pass over the sheet
+  CellRect was_wet_;  // since it began
   std::vector<double> latencies_ms_;
   bool stopping_ = false;
   std::thread thread_;

@@ -1,6 +1,8 @@
 #include "rig/painting.h"
 
+#include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace fude {
@@ -21,7 +23,8 @@ Result<Painting> Painting::open(const PaintingSetup& setup) {
   return Painting(setup, std::move(*ink));
 }
 
-Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink) : ink_(std::move(ink)) {
+Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink)
+    : memory_(std::make_unique<SnapshotMemory>()), ink_(std::make_unique<InkThread>(std::move(ink))) {
   brushes_.assign(pen_ends, Brush(setup.brush, setup.seed));
   LoadBrush load = setup.load;
   for (Brush& brush : brushes_) {
@@ -34,19 +37,26 @@ Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink) : ink_(
 }
 
 void Painting::advance_to(Step step) {
-  while (step_ < step) {
-    ink_->step();
-    ++step_;
-    for (Exchange& exchange : ink_->collect()) {
-      const auto waiting = unanswered_.find(exchange.event);
-      if (waiting == unanswered_.end()) continue;
-      due_.push_back({step_ - 1 + exchange_delay_, waiting->second, std::move(exchange)});
-      unanswered_.erase(waiting);
-    }
+  for (; step_ < step; ++step_) ink_->step();
+}
+
+void Painting::note(const std::vector<Exchange>& answers) {
+  for (const Exchange& exchange : answers) {
+    const auto waiting = unanswered_.find(exchange.event);
+    if (waiting == unanswered_.end()) continue;
+    due_.push_back({waiting->second.at, waiting->second.end, exchange});
+    unanswered_.erase(waiting);
   }
 }
 
 void Painting::give_back_what_is_due() {
+  note(ink_->answers());
+  // Events are answered in their order: the first that waits is the first that is due.
+  while (!unanswered_.empty() && unanswered_.begin()->second.at <= step_) {
+    const std::vector<Exchange> answers = ink_->wait_for_answers();
+    if (answers.empty()) throw std::logic_error("the ink has not answered an event that it was given");
+    note(answers);
+  }
   while (!due_.empty() && due_.front().at <= step_) {
     brushes_[static_cast<std::size_t>(due_.front().end)].take(due_.front().exchange);
     due_.pop_front();
@@ -56,17 +66,21 @@ void Painting::give_back_what_is_due() {
 std::uint64_t Painting::pour(InkEvent event) {
   event.id = next_event_++;
   event.at = session_time(step_, step_s());
-  ink_->apply(event);
-  return event.id;
+  const std::uint64_t id = event.id;
+  ink_->post([event = std::move(event)](Ink& ink) { ink.apply(event); });
+  return id;
 }
 
 bool Painting::move(PenEnd end, const BrushInput& input) {
   give_back_what_is_due();
+  const auto start = std::chrono::steady_clock::now();
   BrushFrame frame = brushes_[static_cast<std::size_t>(end)].move(input);
+  solves_.last_us =
+      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   ++solves_.solves;
   solves_.unconverged += !frame.solve.converged;
   if (!frame.deposit) return false;
-  unanswered_[pour({.what = std::move(*frame.deposit)})] = end;
+  unanswered_[pour({.what = std::move(*frame.deposit)})] = {step_ + exchange_delay_, end};
   return true;
 }
 
@@ -79,16 +93,25 @@ void Painting::act(const Action& action) {
   if (std::holds_alternative<DrySheet>(action.what)) pour({.what = DryPaper{}});
 }
 
-PaintingState Painting::save() const {
-  PaintingState state{
-      step_, std::make_shared<const InkSnapshot>(ink_->snapshot()), {}, due_, unanswered_, next_event_};
+PaintingState Painting::save() {
+  // What has been answered is in the brush's hands; what has not, the ink's snapshot holds.
+  if (!unanswered_.empty()) (void)ink_->caught_up();
+  note(ink_->answers());
+  auto copied = std::make_shared<std::promise<InkSnapshot>>();
+  PaintingState state{step_, copied->get_future().share(), {}, due_, unanswered_, next_event_};
+  ink_->post([copied, memory = memory_.get()](const Ink& ink) {
+    copied->set_value(ink.snapshot(memory->take()));
+    memory->prepare(ink.active_cells() + ink.active_cells() / 4);
+  });
   for (const Brush& brush : brushes_) state.brushes.push_back(brush.state());
   return state;
 }
 
 void Painting::restore(const PaintingState& state) {
   step_ = state.step;
-  ink_->restore(*state.ink);
+  Ink& ink = ink_->caught_up();
+  ink.restore(state.ink.get());
+  (void)ink_->answers();
   for (std::size_t i = 0; i < brushes_.size(); ++i) brushes_[i].restore(state.brushes[i]);
   due_ = state.due;
   unanswered_ = state.unanswered;

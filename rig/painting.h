@@ -4,11 +4,15 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "capture/session.h"
+#include "rig/ink_thread.h"
+#include "rig/snapshot_memory.h"
 #include "signal/action.h"
 #include "signal/brush_input.h"
 #include "signal/result.h"
@@ -22,7 +26,7 @@ struct PaintingSetup {
   InkSetup ink;
   // What both ends of the pen start with: ink ground thick, as for writing. The rubber end holds water only.
   LoadBrush load{0.8F, {1.2F, 0, 0, 0.4F}};
-  bool endless = false;             // --ink endless: the brush stays full
+  bool endless = false;  // --ink endless: the brush stays full
   std::uint64_t seed = 1;
 };
 
@@ -33,20 +37,25 @@ inline constexpr std::size_t pen_ends = 2;
 struct SolveCounts {
   std::int64_t solves = 0;
   std::int64_t unconverged = 0;
+  double last_us = 0;  // of the wall: the last sample's solves and footprints
 };
 
 // All of a painting's state between two steps; restoring it is exact.
 struct PaintingState {
   Step step = 0;
-  std::shared_ptr<const InkSnapshot> ink;
+  std::shared_future<InkSnapshot> ink;  // copied behind the painter
   std::vector<BrushState> brushes;
   struct Due {
     Step at = 0;
     PenEnd end{};
     Exchange exchange;
   };
-  std::deque<Due> due;                         // answered, not yet applied
-  std::map<std::uint64_t, PenEnd> unanswered;  // who waits for which event's exchange
+  std::deque<Due> due;  // answered, not yet applied
+  struct Asked {
+    Step at = 0;  // when the answer is to be applied
+    PenEnd end{};
+  };
+  std::map<std::uint64_t, Asked> unanswered;  // by event
   std::uint64_t next_event = 1;
 };
 
@@ -60,8 +69,13 @@ class Painting {
   double step_s() const { return ink_->step_s(); }
   Step step() const { return step_; }
 
-  // Steps the ink up to `step`; a step that is past already changes nothing.
+  // Steps the ink up to `step`, behind the caller; a step that is past already changes nothing.
   void advance_to(Step step);
+
+  // Steps that the ink has still to do.
+  int behind() const { return ink_->behind(); }
+  // Milliseconds of the wall that each step took, of those done since the last call.
+  std::vector<double> step_ms() { return ink_->step_ms(); }
 
   // One sample of the brush, at the present step. Says whether hair touches the paper.
   bool move(PenEnd end, const BrushInput& input);
@@ -72,21 +86,26 @@ class Painting {
   // Loading, reshaping and drying; Undo and Redo belong to the history.
   void act(const Action& action);
 
-  PaintingState save() const;
+  PaintingState save();
   void restore(const PaintingState& state);
 
-  Ink& ink() { return *ink_; }
-  const Ink& ink() const { return *ink_; }
+  // The ink at the present step: waits for it.
+  Ink& ink() { return ink_->caught_up(); }
+  const Ink& ink() const { return ink_->caught_up(); }
+  // Runs `look` on the ink's thread when it has come to the present step.
+  void look_later(std::function<void(const Ink&)> look) { ink_->post(std::move(look)); }
   const Brush& brush(PenEnd end) const { return brushes_[static_cast<std::size_t>(end)]; }
   const SolveCounts& solves() const { return solves_; }
 
  private:
+  void note(const std::vector<Exchange>& answers);
   void give_back_what_is_due();
 
-  std::unique_ptr<Ink> ink_;
+  std::unique_ptr<SnapshotMemory> memory_;
+  std::unique_ptr<InkThread> ink_;
   std::vector<Brush> brushes_;
   std::deque<PaintingState::Due> due_;
-  std::map<std::uint64_t, PenEnd> unanswered_;
+  std::map<std::uint64_t, PaintingState::Asked> unanswered_;
   std::uint64_t next_event_ = 1;
   Step step_ = 0;
   Step exchange_delay_ = 1;

@@ -51,21 +51,7 @@ bool undoes(const Session& session) {
   });
 }
 
-// Steps one by one so that each can be timed.
-class Stopwatch {
- public:
-  void advance(History& history, Step to) {
-    while (history.step() < to) {
-      const auto start = WallClock::now();
-      history.advance_to(history.step() + 1);
-      step_ms.push_back(since(start) * 1e3);
-    }
-  }
-  void apply(History& history, const PaintingInput& input) {
-    const auto start = WallClock::now();
-    history.apply(input);
-    if (std::holds_alternative<BrushMove>(input)) solve_us.push_back(since(start) * 1e6);
-  }
+struct Stopwatch {
   std::vector<double> step_ms;
   std::vector<double> solve_us;
 };
@@ -122,8 +108,10 @@ Result<History> paint_again(const Session& session, const ReplaySettings& settin
   const double step_s = history.painting().step_s();
   const std::vector<TimedInput> inputs = inputs_of(session, *plan, settings.reach, step_s);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    stopwatch.advance(history, inputs[i].step);
-    stopwatch.apply(history, inputs[i].input);
+    history.advance_to(inputs[i].step);
+    history.apply(inputs[i].input);
+    if (std::holds_alternative<BrushMove>(inputs[i].input))
+      stopwatch.solve_us.push_back(history.painting().solves().last_us);
     if (since(told) > 0.2) {
       told = WallClock::now();
       progress(static_cast<double>(i) / static_cast<double>(inputs.size()));
@@ -132,9 +120,11 @@ Result<History> paint_again(const Session& session, const ReplaySettings& settin
   const double settle_s = settings.settle.until_dry ? longest_settling_s : settings.settle.seconds;
   const Step end = history.step() + 1 + static_cast<Step>(std::ceil(settle_s / step_s));
   while (history.step() < end) {
-    stopwatch.advance(history, history.step() + 1);
+    history.advance_to(history.step() + 1);
     if (settings.settle.until_dry && history.painting().ink().still()) break;
   }
+  (void)history.painting().ink();
+  stopwatch.step_ms = history.painting().step_ms();
   progress(1);
   return history;
 }

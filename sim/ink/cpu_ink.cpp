@@ -43,7 +43,7 @@ void CpuInk::apply(const InkEvent& event) {
   else
     dry_sheet();
   exchange.event = event.id;
-  pending_.push_back(std::move(exchange));
+  ready_.push_back(std::move(exchange));
 }
 
 Exchange CpuInk::deposit(const Deposit& what) {
@@ -111,9 +111,6 @@ void CpuInk::dry_sheet() {
 void CpuInk::step() {
   water_evaporated_ += lattice_->step(Stage::full);
   ++steps_;
-  ready_.insert(ready_.end(), std::make_move_iterator(pending_.begin()),
-                std::make_move_iterator(pending_.end()));
-  pending_.clear();
 }
 
 std::vector<Exchange> CpuInk::collect() { return std::exchange(ready_, {}); }
@@ -148,19 +145,20 @@ bool CpuInk::still() const {
 InkRegion CpuInk::read(const CellRect& wanted) const {
   InkRegion region = blank_region(wanted, columns_, rows_);
   const auto per_area = static_cast<float>(setup_.paper.capacity);
-  for (const AwakeTile& t : lattice_->awake()) read_tile(t, per_area, region);
+  const std::vector<AwakeTile>& awake = lattice_->awake();
+  threads_.for_each(awake.size(), [&](std::size_t i) { read_tile(awake[i], per_area, region); });
   for (const auto& [place, pigment] : lattice_->asleep())
     read_sleeping_tile(place, pigment, per_area, region);
   return region;
 }
 
-InkSnapshot CpuInk::snapshot() const {
-  return {save_tiles(view_of(*lattice_)),
+InkSnapshot CpuInk::snapshot(InkSnapshot memory) const {
+  return {save_tiles(view_of(*lattice_), threads_, std::move(memory.tiles)),
           steps_,
           water_deposited_,
           water_evaporated_,
           pigment_deposited_,
-          pending_,
+          {},
           ready_};
 }
 
@@ -170,10 +168,10 @@ void CpuInk::restore(const InkSnapshot& snapshot) {
   water_deposited_ = snapshot.water_deposited;
   water_evaporated_ = snapshot.water_evaporated;
   pigment_deposited_ = snapshot.pigment_deposited;
-  pending_ = snapshot.pending;
   ready_ = snapshot.ready;
+  ready_.insert(ready_.end(), snapshot.pending.begin(), snapshot.pending.end());
 }
 
-std::uint64_t CpuInk::hash() const { return hash_tiles(save_tiles(view_of(*lattice_))); }
+std::uint64_t CpuInk::hash() const { return hash_tiles(save_tiles(view_of(*lattice_), threads_)); }
 
 }  // namespace fude

@@ -28,7 +28,7 @@ class CpuInk final : public Ink {
   CellRect active_rect() const override;
   bool still() const override;
   InkRegion read(const CellRect& rect) const override;
-  InkSnapshot snapshot() const override;
+  InkSnapshot snapshot(InkSnapshot memory) const override;
   void restore(const InkSnapshot& snapshot) override;
   std::uint64_t hash() const override;
 
@@ -41,13 +41,12 @@ class CpuInk final : public Ink {
   int columns_;
   int rows_;
   LatticeNumbers numbers_;
-  ThreadPool threads_;
+  mutable ThreadPool threads_;
   std::unique_ptr<Lattice> lattice_;
   std::uint64_t steps_ = 0;
   double water_deposited_ = 0;  // in saturated cells, as the rest
   double water_evaporated_ = 0;
   InkTotals::Pigments pigment_deposited_{};
-  std::vector<Exchange> pending_;
   std::vector<Exchange> ready_;
 };
 

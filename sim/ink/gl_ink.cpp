@@ -136,10 +136,10 @@ class GlInk final : public Ink {
     return region;
   }
 
-  InkSnapshot snapshot() const override {
+  InkSnapshot snapshot(InkSnapshot memory) const override {
     const GlContext::Use use(context_);
     InkSnapshot snapshot;
-    snapshot.tiles = save_tiles(view_of(whole_sheet()));
+    snapshot.tiles = save_tiles(view_of(whole_sheet()), one_thread_, std::move(memory.tiles));
     snapshot.steps = steps_;
     snapshot.pending = complete(state_->pending);
     snapshot.ready = complete(state_->ready);
@@ -165,7 +165,7 @@ class GlInk final : public Ink {
 
   std::uint64_t hash() const override {
     const GlContext::Use use(context_);
-    return hash_tiles(save_tiles(view_of(whole_sheet())));
+    return hash_tiles(save_tiles(view_of(whole_sheet()), one_thread_));
   }
 
  private:
@@ -257,7 +257,7 @@ class GlInk final : public Ink {
   void dry_sheet() {
     const TileCopies copies = whole_sheet();
     evaporated_elsewhere_ += sum_layers(view_of(copies)).water_left;
-    std::vector<InkSnapshot::Tile> tiles = save_tiles(view_of(copies));
+    std::vector<InkSnapshot::Tile> tiles = save_tiles(view_of(copies), one_thread_);
     for (InkSnapshot::Tile& t : tiles) dry(t);
     state_->tiles.clear();
     for (const InkSnapshot::Tile& t : tiles) state_->tiles.load(t);
@@ -266,6 +266,7 @@ class GlInk final : public Ink {
   InkSetup setup_;
   int columns_;
   int rows_;
+  mutable ThreadPool one_thread_{1};  // the card has the others
   GlContext context_;
   std::unique_ptr<State> state_;
   std::uint64_t steps_ = 0;

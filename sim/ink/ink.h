@@ -98,7 +98,8 @@ class Ink {
   virtual void apply(const InkEvent& event) = 0;
   virtual void step() = 0;
 
-  // What the paper took in the events that were applied before the last finished step, in their order.
+  // What the paper took in the events applied so far, in their order: as soon as it is known, at the
+  // latest for those applied before the last finished step.
   virtual std::vector<Exchange> collect() = 0;
 
   virtual InkTotals totals() const = 0;
@@ -111,7 +112,10 @@ class Ink {
   // rect is cut to the sheet. 24 bytes a cell: read large sheets in strips.
   virtual InkRegion read(const CellRect& rect) const = 0;
 
-  virtual InkSnapshot snapshot() const = 0;
+  // `memory`: a snapshot that is not needed any more, to be written over; new memory costs more than the
+  // copy.
+  virtual InkSnapshot snapshot(InkSnapshot memory) const = 0;
+  InkSnapshot snapshot() const { return snapshot({}); }
   virtual void restore(const InkSnapshot& snapshot) = 0;
 
   // Of all state, the same for tiles and dense, and for any tile awake or asleep.

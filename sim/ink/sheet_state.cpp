@@ -48,19 +48,6 @@ bool any(const std::vector<float>& values) {
   return std::ranges::any_of(values, [](float v) { return v != 0; });
 }
 
-InkSnapshot::Tile save(const AwakeTile& tile) {
-  InkSnapshot::Tile saved{tile.place.column, tile.place.row, true, {}};
-  saved.planes.reserve(saved_planes * tile::cells);
-  const auto append = [&](std::size_t plane) {
-    for (int y = 0; y < tile::side; ++y) {
-      const float* row = tile.view.cells(plane, y);
-      saved.planes.insert(saved.planes.end(), row, row + tile::side);
-    }
-  };
-  for (std::size_t p = 0; p < saved_planes; ++p) append(p);
-  return saved;
-}
-
 // Whether a saved tile holds anything besides fixed pigment.
 bool wet(const InkSnapshot::Tile& tile) {
   const auto nonzero = [&](std::size_t first, std::size_t last) {
@@ -70,6 +57,16 @@ bool wet(const InkSnapshot::Tile& tile) {
   };
   return nonzero(0, tile::fixed_ink) ||
          nonzero(tile::still_begin + tile::surface, tile::still_begin + tile::fixed_mass);
+}
+
+// Into planes that are there already.
+void save(const AwakeTile& tile, InkSnapshot::Tile& saved) {
+  saved.column = tile.place.column;
+  saved.row = tile.place.row;
+  float* to = saved.planes.data();
+  for (std::size_t p = 0; p < saved_planes; ++p)
+    for (int y = 0; y < tile::side; ++y, to += tile::side) std::copy_n(tile.view.cells(p, y), tile::side, to);
+  saved.wet = wet(saved);
 }
 
 void load(const InkSnapshot::Tile& saved, AwakeTile& tile) {
@@ -165,17 +162,15 @@ void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_
     }
 }
 
-std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet) {
-  std::vector<InkSnapshot::Tile> tiles;
-  for (const AwakeTile& t : sheet.awake) {
-    InkSnapshot::Tile whole = save(t);
-    if (wet(whole)) {
-      tiles.push_back(std::move(whole));
-      continue;
-    }
-    FixedPigment fixed = fixed_of(t.view);
-    if (any(fixed)) tiles.push_back({t.place.column, t.place.row, false, std::move(fixed)});
-  }
+std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet, ThreadPool& threads,
+                                          std::vector<InkSnapshot::Tile> memory) {
+  std::vector<InkSnapshot::Tile> tiles = std::move(memory);
+  tiles.resize(sheet.awake.size());
+  for (InkSnapshot::Tile& t : tiles) t.planes.resize(saved_planes * tile::cells);
+  threads.for_each(tiles.size(), [&](std::size_t i) { save(sheet.awake[i], tiles[i]); });
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (!tiles[i].wet) tiles[i].planes = fixed_of(sheet.awake[i].view);
+  std::erase_if(tiles, [](const InkSnapshot::Tile& t) { return !t.wet && !any(t.planes); });
   for (const auto& [place, pigment] : sheet.asleep)
     tiles.push_back({place.column, place.row, false, pigment});
   std::ranges::sort(tiles, [](const auto& a, const auto& b) {

@@ -33,7 +33,9 @@ CellRect rect_around(std::span<const TilePlace> tiles, int columns, int rows);
 void read_tile(const AwakeTile& tile, float per_area, InkRegion& region);
 void read_sleeping_tile(TilePlace place, const FixedPigment& pigment, float per_area, InkRegion& region);
 
-std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet);
+// `memory`: tiles that are not needed any more; what they hold is written over.
+std::vector<InkSnapshot::Tile> save_tiles(const SheetView& sheet, ThreadPool& threads,
+                                          std::vector<InkSnapshot::Tile> memory = {});
 void load_tiles(const std::vector<InkSnapshot::Tile>& tiles, Lattice& lattice);
 
 // Fixes all pigment of a saved tile; its water is gone.
