@@ -1,9 +1,10 @@
 #include "drivers/families.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
+#include <utility>
 
+#include "drivers/falcon/falcon_decoder.h"
 #include "drivers/handle/handle_decoder.h"
 #include "drivers/joycon/joycon_decoder.h"
 #include "drivers/openigtlink/openigtlink_decoder.h"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::uint16_t nintendo = 0x057e;
 constexpr std::uint16_t polhemus_vendor = 0x0f44;
+constexpr std::uint16_t ftdi_vendor = 0x0403;
 constexpr HidUsage multi_axis_controller{0x01, 0x08};
 constexpr HidUsage brush_handle{0xff00, 0x01};
 
@@ -54,6 +56,10 @@ constexpr FamilyRow rows[] = {
     {Family::polhemus, "fastrak", DeviceKind::tracker, "serial", 0, 0x0002, {}, "FASTRAK"},
     {Family::polhemus, "patriot", DeviceKind::tracker, "serial", 0, 0xef12, {}, "PATRIOT"},
     {Family::polhemus, "liberty", DeviceKind::tracker, "serial", 0, 0xff12, {}, "LIBERTY"},
+#define FALCON_MODEL(product, name, force_n, motor_counts_per_nm, motor_limit_counts, middle_m) \
+  {Family::falcon, "falcon", DeviceKind::haptic, "usb", ftdi_vendor, product, {}, name},
+#include "drivers/falcon/models.inl"
+#undef FALCON_MODEL
     {Family::openigtlink, "openigtlink", DeviceKind::tracker, "network", 0, 0, {}, "OpenIGTLink"},
     {Family::vrpn, "vrpn", DeviceKind::tracker, "network", 0, 0, {}, "VRPN"},
 };
@@ -83,7 +89,8 @@ const FamilyRow* find_family(std::string_view word, std::string_view transport) 
   return first([&](const FamilyRow& row) { return word == row.word && transport == row.transport; });
 }
 
-std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescription& device) {
+std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescription& device,
+                                      std::vector<std::byte> firmware) {
   switch (row.family) {
     case Family::tablet:
       return std::make_unique<TabletDecoder>(device);
@@ -105,6 +112,8 @@ std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescript
       return std::make_unique<OpenIgtLinkDecoder>();
     case Family::vrpn:
       return std::make_unique<VrpnDecoder>();
+    case Family::falcon:
+      return std::make_unique<FalconDecoder>(std::move(firmware));
   }
   throw std::logic_error("a family without a decoder");
 }

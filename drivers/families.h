@@ -1,11 +1,13 @@
 // Which family's driver a device belongs to, and its decoder.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "drivers/decoder.h"
 #include "signal/device.h"
@@ -23,6 +25,7 @@ enum class Family : std::uint8_t {
   ultrasonic,
   openigtlink,
   vrpn,
+  falcon,
 };
 
 // The top-level collection of a HID interface.
@@ -54,7 +57,9 @@ const FamilyRow* find_family(const DeviceDescription& device, std::optional<HidU
 // The first row of this word and transport; null where there is none.
 const FamilyRow* find_family(std::string_view word, std::string_view transport);
 
-// The description matters for evdev alone, where the axes stand in it.
-std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescription& device);
+// The description matters for evdev alone, where the axes stand in it; the firmware, a file of the user's,
+// for a Falcon alone.
+std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescription& device,
+                                      std::vector<std::byte> firmware = {});
 
 }  // namespace fude
