@@ -1,61 +1,105 @@
 #include "rig/import_session.h"
 
+#include <cstdio>
+
+#include "capture/sample_columns.h"
 #include "capture/session_writer.h"
-#include "drivers/tablet/identify.h"
-#include "drivers/tablet/pen_decoder.h"
+#include "rig/recorded_driver.h"
 
 namespace fude {
 namespace {
 
-// Events without a description still belong to some device; its axes are not known.
-DeviceDescription undescribed() {
-  DeviceDescription device;
-  device.name = "a device without a description";
-  device.transport = "evdev";
-  return device;
+constexpr std::size_t most_reasons = 64;
+
+// Kept short when a stranger's file gives a thousand reasons.
+void pass_over(std::map<std::string, std::uint64_t>& reasons, const std::string& what) {
+  if (reasons.size() < most_reasons || reasons.contains(what))
+    ++reasons[what];
+  else
+    ++reasons["other things"];
 }
+
+std::string what_came(const Transfer& transfer) {
+  char text[64];
+  const unsigned number = transfer.payload.empty() ? 0 : std::to_integer<unsigned>(transfer.payload[0]);
+  const bool packet = transfer.kind == TransferKind::serial;
+  std::snprintf(text, sizeof text, "%s %02x of %zu bytes", packet ? "packets" : "reports", number,
+                transfer.payload.size());
+  return text;
+}
+
+// Takes the samples of one device: into the session, into its counts, and under the line of its clock.
+class SampleTray {
+ public:
+  SampleTray(SessionWriter& out, DeviceNumber device, ImportedStream& stream)
+      : out_(out), device_(device), stream_(stream) {}
+
+  Result<void> add(const Sample& sample) {
+    if (auto r = out_.add_sample(device_, sample); !r) return tl::unexpected(r.error());
+    if (const auto* pen = std::get_if<PenSample>(&sample)) {
+      stream_.pen = true;
+      stream_.samples += pen->in_proximity;
+      stream_.strokes += pen->in_contact && !touching_;
+      touching_ = pen->in_contact;
+    } else {
+      ++stream_.samples;
+    }
+    const SampleTime& time = time_of(sample);
+    if (time.device_tick) ticks_[part_of(sample)].push_back({time.host, *time.device_tick});
+    return {};
+  }
+
+  Result<void> add_clock_fits(const DeviceDescription& device) {
+    if (!device.clock) return {};
+    for (const auto& [part, readings] : ticks_)
+      for (const ClockLine& line : fit_clock(readings, {.clock = *device.clock}).lines)
+        if (auto r = out_.add_clock_fit({device_, part, line}); !r) return r;
+    return {};
+  }
+
+ private:
+  SessionWriter& out_;
+  DeviceNumber device_;
+  ImportedStream& stream_;
+  bool touching_ = false;
+  std::map<std::string, std::vector<ClockReading>> ticks_;
+};
 
 // Actions go between the samples, where their time puts them.
 Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& recording,
                                     std::span<const Action> actions) {
+  RecordedDriver driver(recording.device, recording.transfers);
   ImportedStream stream;
   stream.events = recording.counts.events;
   stream.frames = recording.counts.frames;
-  const bool text = !recording.samples.empty() || (recording.device && recording.device->transport == "text");
-  const DeviceDescription device = !recording.device ? undescribed()
-                                   : text            ? *recording.device
-                                                     : identified(*recording.device);
-  stream.device = recording.device ? device.name : "";
-  stream.raw_only = !text && device.kind != DeviceKind::pen_tablet;
+  stream.passed_over = recording.passed_over;
+  stream.device = recording.device ? driver.device().name : "";
+  stream.raw_only = !driver.decodes() && driver.device().transport != "text";
 
-  const auto number = out.add_device(device);
+  const auto number = out.add_device(driver.device());
   if (!number) return tl::unexpected(number.error());
-  for (const PenSample& sample : recording.samples) {
-    if (auto r = out.add_sample(*number, sample); !r) return tl::unexpected(r.error());
-    stream.samples += sample.in_proximity;
-  }
-  PenDecoder decoder(device);
+  SampleTray tray(out, *number, stream);
+  std::vector<Sample> made;
   for (const Transfer& transfer : recording.transfers) {
     for (; !actions.empty() && actions.front().time <= transfer.time; actions = actions.subspan(1))
       if (auto r = out.add_action(actions.front()); !r) return tl::unexpected(r.error());
     if (auto r = out.add_transfer(*number, transfer); !r) return tl::unexpected(r.error());
-    if (stream.raw_only) continue;
-    if (const auto sample = decoder.decode(transfer))
-      if (auto r = out.add_sample(*number, *sample); !r) return tl::unexpected(r.error());
+    const std::uint64_t before = driver.not_understood();
+    driver.decode(transfer, made);
+    if (driver.not_understood() > before) pass_over(stream.passed_over, what_came(transfer));
+    for (const Sample& sample : made)
+      if (auto r = tray.add(sample); !r) return tl::unexpected(r.error());
+    made.clear();
   }
-  if (text) {
-    bool touching = false;
-    for (const PenSample& sample : recording.samples) {
-      stream.strokes += sample.in_contact && !touching;
-      touching = sample.in_contact;
-    }
-  } else {
-    const DecodeCounts& counts = decoder.counts();
-    stream.samples = counts.samples;
-    stream.strokes = counts.strokes;
-    stream.lost = counts.lost + counts.malformed;
-    stream.out_of_range = counts.out_of_range;
-  }
+  for (const Sample& sample : recording.samples)
+    if (auto r = tray.add(sample); !r) return tl::unexpected(r.error());
+  stream.lost = driver.lost();
+  stream.out_of_range = driver.out_of_range();
+  stream.pen = stream.pen || driver.device().kind == DeviceKind::pen_tablet;
+  if (auto r = tray.add_clock_fits(driver.device()); !r) return tl::unexpected(r.error());
+  for (const auto& [what, count] : stream.passed_over)
+    if (auto r = out.add_passed_over({*number, what, static_cast<std::int64_t>(count)}); !r)
+      return tl::unexpected(r.error());
   return stream;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +25,9 @@ struct ImportedStream {
   std::uint64_t strokes = 0;
   std::uint64_t lost = 0;
   std::uint64_t out_of_range = 0;
-  bool raw_only = false;  // no description, or no pen: the events are kept but not decoded
+  bool pen = false;       // strokes and the range mean something
+  bool raw_only = false;  // no description, or no driver: what came is kept but not decoded
+  std::map<std::string, std::uint64_t> passed_over;  // what could not be understood, and how often
 };
 
 struct ImportReceipt {

@@ -80,7 +80,7 @@ Result<RawRecording> import_mypaint_events(std::string_view text, Millimetres pe
     sample.time = {Timestamp(Duration(std::llround(row->time_s * 1e9))), StampedBy::recording,
                    recording.samples.size(), std::nullopt};
     if (!recording.samples.empty()) {
-      const Timestamp before = recording.samples.back().time.host;
+      const Timestamp before = std::get<PenSample>(recording.samples.back()).time.host;
       if (sample.time.host < before)
         return failure(Fault::malformed, where() +
                                              "time runs backwards; cut the file there and import the "
@@ -93,7 +93,7 @@ Result<RawRecording> import_mypaint_events(std::string_view text, Millimetres pe
     sample.x_counts = row->x;
     sample.y_counts = row->y;
     sample.pressure = Fraction(row->pressure);
-    recording.samples.push_back(sample);
+    recording.samples.emplace_back(sample);
     ++recording.counts.events;
   }
   const std::size_t rows = recording.samples.size();

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "signal/device.h"
-#include "signal/pen_sample.h"
+#include "signal/sample.h"
 #include "signal/transfer.h"
 
 namespace fude {
@@ -24,8 +26,9 @@ struct ImportCounts {
 struct RawRecording {
   std::optional<DeviceDescription> device;  // none: the events cannot be decoded, only kept
   std::vector<Transfer> transfers;          // stamped by the recording, time never decreasing
-  std::vector<PenSample> samples;           // text formats only
+  std::vector<Sample> samples;              // of files that hold finished values
   ImportCounts counts;
+  std::map<std::string, std::uint64_t> passed_over;  // what could not be understood, and how often
 };
 
 }  // namespace fude

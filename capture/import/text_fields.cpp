@@ -1,5 +1,6 @@
 #include "capture/import/text_fields.h"
 
+#include <cmath>
 #include <cstdint>
 
 namespace fude {
@@ -17,6 +18,19 @@ std::optional<Duration> whole_seconds(std::string_view field) {
   std::int64_t nanoseconds = *fraction;
   for (std::size_t i = decimals.size(); i < 9; ++i) nanoseconds *= 10;
   return time + Duration(nanoseconds);
+}
+
+std::optional<Duration> any_seconds(std::string_view field) {
+  if (const auto exact = whole_seconds(field)) return exact;
+  const auto real = whole_real(field);
+  if (!real || !(*real >= 0 && *real < longest_time_s)) return std::nullopt;
+  return Duration(std::llround(*real * 1e9));
+}
+
+std::optional<std::byte> hexadecimal_byte(std::string_view field) {
+  if (field.starts_with("0x") || field.starts_with("0X")) field.remove_prefix(2);
+  const auto number = whole_integer<std::uint8_t>(field, 16);
+  return number ? std::optional(static_cast<std::byte>(*number)) : std::nullopt;
 }
 
 }  // namespace fude

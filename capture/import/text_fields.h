@@ -54,4 +54,11 @@ inline constexpr double longest_time_s = 4294967296.0;
 // with more than nine decimals.
 std::optional<Duration> whole_seconds(std::string_view field);
 
+// As above, or any other way to write a number of seconds (1e-3, more decimals), then rounded to the
+// nanosecond.
+std::optional<Duration> any_seconds(std::string_view field);
+
+// "02" to "ff", with or without 0x before.
+std::optional<std::byte> hexadecimal_byte(std::string_view field);
+
 }  // namespace fude

@@ -116,7 +116,9 @@ TEST(Painting, EveryRowIsASample) {
   const auto imported = import_file(recordings() / file, {});
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_EQ(imported->format, ImportFormat::mypaint_events);
-  const auto& samples = imported->recordings.at(0).samples;
+  std::vector<PenSample> samples;
+  for (const Sample& sample : imported->recordings.at(0).samples)
+    samples.push_back(std::get<PenSample>(sample));
   ASSERT_EQ(samples.size(), 2937u);
   int strokes = 0;
   for (std::size_t i = 0; i < samples.size(); ++i)

@@ -51,6 +51,19 @@ TEST(Recognise, ByContent) {
   EXPECT_EQ(recognise("# libinput record\nversion: 1\n"), ImportFormat::libinput);
   EXPECT_EQ(recognise("version: 1\nndevices: 1\nlibinput:\n"), ImportFormat::libinput);
   EXPECT_EQ(recognise("\n0 1 2 0.5\n"), ImportFormat::mypaint_events);
+  EXPECT_EQ(recognise("# 1:0\nD:0\nR: 1 c0\nN: A Pen\n"), ImportFormat::hid_recorder);
+  EXPECT_EQ(recognise("N: A Pen\nI: 3 056a 0061\nR: 1 c0\n"), ImportFormat::hid_recorder);
+  EXPECT_EQ(recognise("\n003:007:000:STREAM  1557634289.487561\n 08 80\n"), ImportFormat::usbhid_dump);
+  EXPECT_EQ(recognise("0x19 0x81 0x3 0x7 0x0\n"), ImportFormat::joycon_uart);
+  EXPECT_EQ(
+      recognise(
+          "t_s,gyr_x_radps,gyr_y_radps,gyr_z_radps,acc_x_mps2,acc_y_mps2,acc_z_mps2,opt_qw,opt_qx,opt_qy,"
+          "opt_qz,opt_x,opt_y,opt_z\n"),
+      ImportFormat::imu_csv);
+  EXPECT_EQ(recognise("frame_number,t_s,a_qw,a_qx,a_qy,a_qz,a_x,a_y,a_z\n"), ImportFormat::poses_csv);
+  EXPECT_EQ(recognise("frame_number,t_s,more\n"), ImportFormat::timestamps_csv);
+  EXPECT_EQ(recognise("stroke,stroke_t0_unix_ms,t_rel_ms,x_px,y_px,pressure\n"), ImportFormat::wacom_ink_csv);
+  EXPECT_EQ(recognise("1\n1 2 0.5 1 510 520 0\n"), ImportFormat::svc);
   EXPECT_FALSE(recognise("hello"));
   EXPECT_FALSE(recognise(""));
 }

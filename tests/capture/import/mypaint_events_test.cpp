@@ -18,11 +18,11 @@ TEST(MypaintEvents, RowsBecomeSamples) {
   EXPECT_EQ(recording->device->mm_per_count, 0.1);
   EXPECT_EQ(recording->device->kind, DeviceKind::pen_tablet);
   ASSERT_EQ(recording->samples.size(), 2u);
-  const PenSample& first = recording->samples[0];
+  const PenSample& first = std::get<PenSample>(recording->samples[0]);
   EXPECT_EQ(first.x_counts, 205.244514);
   EXPECT_TRUE(first.in_proximity);
   EXPECT_FALSE(first.in_contact);
-  const PenSample& second = recording->samples[1];
+  const PenSample& second = std::get<PenSample>(recording->samples[1]);
   EXPECT_EQ(second.time.host, Timestamp(std::chrono::milliseconds(8)));
   EXPECT_EQ(second.time.stamped_by, StampedBy::recording);
   EXPECT_EQ(second.time.sequence, 1u);
