@@ -12,8 +12,8 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "drivers/tablet/identify.h"
+#include "drivers/transport/device_node.h"
 #include "drivers/transport/evdev_devices.h"
-#include "drivers/transport/evdev_source.h"
 
 namespace fude {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "drivers/transport/evdev_source.h"
+#include "drivers/transport/device_node.h"
 
 namespace fude {
 

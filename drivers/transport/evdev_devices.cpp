@@ -10,23 +10,10 @@
 
 #include "drivers/tablet/identify.h"
 #include "drivers/transport/evdev_source.h"
+#include "drivers/transport/udev_device.h"
 
 namespace fude {
 namespace {
-
-using Device = std::unique_ptr<udev_device, decltype(&udev_device_unref)>;
-
-std::string text(const char* value) { return value != nullptr ? value : ""; }
-
-std::string attribute(udev_device* device, const char* name) {
-  return text(udev_device_get_sysattr_value(device, name));
-}
-
-std::uint16_t hexadecimal(const std::string& digits) {
-  std::uint16_t value = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  return value;
-}
 
 // "1f 0 1000003": words of 64 bits in hexadecimal, the highest first.
 std::vector<std::uint16_t> set_bits(std::string_view words) {
@@ -119,8 +106,8 @@ Result<std::vector<FoundDevice>> find_pen_tablets() {
   std::vector<FoundDevice> tablets;
   udev_list_entry* entry = nullptr;
   udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(list.get())) {
-    const Device device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)),
-                        udev_device_unref);
+    const UdevDevice device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)),
+                            udev_device_unref);
     if (!device || !is_event_node(device.get())) continue;
     if (auto tablet = pen_tablet(device.get())) tablets.push_back(std::move(*tablet));
   }
@@ -131,20 +118,21 @@ Result<std::vector<FoundDevice>> find_pen_tablets() {
 
 Result<std::unique_ptr<PlugMonitor>> PlugMonitor::open() {
   Udev context(udev_new(), udev_unref);
-  Monitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr,
-                  udev_monitor_unref);
+  UdevMonitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr,
+                      udev_monitor_unref);
   if (!monitor || udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "input", nullptr) < 0 ||
       udev_monitor_enable_receiving(monitor.get()) < 0)
     return failure(Fault::unsupported, no_udev);
   return std::unique_ptr<PlugMonitor>(new PlugMonitor(std::move(context), std::move(monitor)));
 }
 
-PlugMonitor::PlugMonitor(Udev udev, Monitor monitor) : udev_(std::move(udev)), monitor_(std::move(monitor)) {}
+PlugMonitor::PlugMonitor(Udev udev, UdevMonitor monitor)
+    : udev_(std::move(udev)), monitor_(std::move(monitor)) {}
 
 std::optional<PlugEvent> PlugMonitor::next(std::optional<Timestamp> deadline) {
   for (;;) {
     if (!waker_.wait(udev_monitor_get_fd(monitor_.get()), deadline).ready) return std::nullopt;
-    const Device device(udev_monitor_receive_device(monitor_.get()), udev_device_unref);
+    const UdevDevice device(udev_monitor_receive_device(monitor_.get()), udev_device_unref);
     if (!device || !is_event_node(device.get())) continue;
     const std::string action = text(udev_device_get_action(device.get()));
     const char* node = udev_device_get_devnode(device.get());

@@ -1,14 +1,13 @@
 // The input devices that udev knows, and their coming and going.
 #pragma once
 
-#include <libudev.h>
-
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "drivers/transport/udev_device.h"
 #include "drivers/transport/waker.h"
 #include "signal/device.h"
 #include "signal/result.h"
@@ -43,12 +42,10 @@ class PlugMonitor {
   void wake() { waker_.wake(); }
 
  private:
-  using Udev = std::unique_ptr<udev, decltype(&udev_unref)>;
-  using Monitor = std::unique_ptr<udev_monitor, decltype(&udev_monitor_unref)>;
-  PlugMonitor(Udev udev, Monitor monitor);
+  PlugMonitor(Udev udev, UdevMonitor monitor);
 
   Udev udev_;
-  Monitor monitor_;
+  UdevMonitor monitor_;
   Waker waker_;
 };
 

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <utility>
 
+#include "drivers/transport/device_node.h"
+
 namespace fude {
 
 DeviceDescription describe(const libevdev* device) {
@@ -32,10 +34,6 @@ DeviceDescription describe(const libevdev* device) {
                                   axis->flat, axis->resolution, axis->value});
   description.id = device_id(description);
   return description;
-}
-
-std::string access_advice(const std::filesystem::path& node) {
-  return "no permission to read " + node.string() + "; run `sudo usermod -aG input $USER` and log in again";
 }
 
 Result<std::unique_ptr<EvdevSource>> EvdevSource::open(const std::filesystem::path& node) {

@@ -57,7 +57,4 @@ class EvdevSource final : public ByteSource {
 // What the kernel knows of an open device; the serial is what the device calls unique.
 DeviceDescription describe(const libevdev* device);
 
-// The one line for a node that may not be read.
-std::string access_advice(const std::filesystem::path& node);
-
 }  // namespace fude

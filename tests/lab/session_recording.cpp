@@ -53,9 +53,15 @@ std::size_t SessionRecording::drain_until(ByteSource& source, std::size_t count)
   return size_;
 }
 
+bool SessionRecording::drain_one(ByteSource& source) {
+  const std::size_t before = size_;
+  return drain_until(source, before + 1) > before;
+}
+
 void SessionRecording::add(const Transfer& transfer) {
   sound(writer_.add_transfer(device_, transfer));
   ++size_;
+  last_ = transfer;
 }
 
 std::vector<Transfer> SessionRecording::finish() {

@@ -22,8 +22,11 @@ class SessionRecording {
   std::size_t drain(ByteSource& source);
   // The same until there are `count` in all or ten seconds have passed.
   std::size_t drain_until(ByteSource& source, std::size_t count);
+  // One more; false when none came.
+  bool drain_one(ByteSource& source);
   void add(const Transfer& transfer);
   std::size_t size() const { return size_; }
+  const Transfer& last() const { return last_; }
   const std::optional<Error>& error() const { return error_; }
 
   // Closes the session and gives what its file holds.
@@ -36,6 +39,7 @@ class SessionRecording {
   SessionWriter writer_;
   DeviceNumber device_ = 0;
   std::size_t size_ = 0;
+  Transfer last_;
   std::optional<Error> error_;
 };
 

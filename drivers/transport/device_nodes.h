@@ -1,0 +1,62 @@
+// The nodes of /dev through which devices other than input devices are reached, as udev knows them, and
+// their coming and going.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/transport/udev_device.h"
+#include "drivers/transport/waker.h"
+#include "signal/device.h"
+#include "signal/result.h"
+
+namespace fude {
+
+enum class NodeKind : std::uint8_t {
+  hidraw,  // /dev/hidraw0
+  usb,     // /dev/bus/usb/001/004, a whole device
+  serial,  // /dev/ttyACM0 or /dev/ttyUSB0: a port of a USB device
+  video,   // /dev/video0
+};
+
+struct DeviceNode {
+  NodeKind kind = NodeKind::hidraw;
+  std::filesystem::path path;
+  // Name, bus, vendor, product, version, serial, id and transport; `kind` is `other`. A serial port is known
+  // by the USB device that it belongs to, a camera too where it has one.
+  DeviceDescription description;
+  std::string syspath;  // the same for all nodes of one USB device: its own; empty where there is none
+  bool access = false;
+};
+
+// Ordered by path. Errors: unsupported where udev does not run.
+Result<std::vector<DeviceNode>> find_nodes(NodeKind kind);
+
+struct NodeEvent {
+  bool plugged = false;
+  DeviceNode node;  // of one that went away: kind and path only
+};
+
+// Follows nodes of some kinds. What happened before open() is not seen: open, then find_nodes().
+class NodeMonitor {
+ public:
+  static Result<std::unique_ptr<NodeMonitor>> open(std::span<const NodeKind> kinds);
+
+  // Blocks until such a node comes or goes, wake() was called, or the deadline has passed; the latter two
+  // give none.
+  std::optional<NodeEvent> next(std::optional<Timestamp> deadline);
+  void wake() { waker_.wake(); }
+
+ private:
+  NodeMonitor(Udev udev, UdevMonitor monitor);
+
+  Udev udev_;
+  UdevMonitor monitor_;
+  Waker waker_;
+};
+
+}  // namespace fude

@@ -1,0 +1,150 @@
+// A serial port of a USB device on the kernel's virtual host, read and written by SerialSource.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/transport/serial_source.h"
+#include "tests/lab/attached_node.h"
+#include "tests/lab/byte_literals.h"
+#include "tests/lab/reopened.h"
+#include "tests/lab/replugs.h"
+#include "tests/lab/session_recording.h"
+#include "tests/lab/usb_gadget.h"
+
+namespace fude::lab {
+namespace {
+
+constexpr int baud = 115200;
+
+// The device's side of the port.
+class Port {
+ public:
+  explicit Port(const UsbGadget& gadget) {
+    int number = 0;
+    std::ifstream(gadget.function("acm.lab") / "port_num") >> number;
+    file_ =
+        FileDescriptor(open(("/dev/ttyGS" + std::to_string(number)).c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    termios settings{};
+    tcgetattr(file_.get(), &settings);
+    cfmakeraw(&settings);
+    tcsetattr(file_.get(), TCSANOW, &settings);
+  }
+  bool send(const Bytes& sent) {
+    return write(file_.get(), sent.data(), sent.size()) == static_cast<ssize_t>(sent.size());
+  }
+  Bytes receive(std::size_t count) {
+    Bytes received(count);
+    std::size_t at = 0;
+    while (at < count) {
+      const ssize_t size = read(file_.get(), received.data() + at, count - at);
+      if (size <= 0) break;
+      at += static_cast<std::size_t>(size);
+    }
+    received.resize(at);
+    return received;
+  }
+
+ private:
+  FileDescriptor file_;
+};
+
+// fude's ultrasonic receiver is known by pid.codes' second number for tests.
+struct Receiver {
+  Receiver() : gadget({0x1209, 0x0002, "SOUND1", "ultrasonic receiver"}, 0) { gadget.add("acm.lab"); }
+  UsbGadget gadget;
+  const std::string id = "1209:0002:SOUND1";
+};
+
+Bytes received(const std::vector<Transfer>& transfers) {
+  Bytes all;
+  for (const Transfer& transfer : transfers)
+    all.insert(all.end(), transfer.payload.begin(), transfer.payload.end());
+  return all;
+}
+
+TEST(Serial, EveryByteGoesThroughAsItIs) {
+  Receiver receiver;
+  const DeviceNode node = attached_node(NodeKind::serial, receiver.id, [&] { receiver.gadget.plug(); });
+  EXPECT_EQ(node.description.name, "ultrasonic receiver");
+  EXPECT_EQ(node.description.transport, "serial");
+  auto source = SerialSource::open(node.path, baud);
+  ASSERT_TRUE(source) << source.error().message;
+  const auto second = SerialSource::open(node.path, baud);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().fault, Fault::busy);
+
+  Port port(receiver.gadget);
+  Bytes all;
+  for (unsigned value = 0; value < 256; ++value) all.push_back(static_cast<std::byte>(value));
+  SessionRecording recording(node.description);
+  ASSERT_TRUE(port.send(all));
+  for (std::size_t size = 0; size < all.size(); size += recording.last().payload.size())
+    ASSERT_TRUE(recording.drain_one(**source));
+  ASSERT_TRUE((*source)->write(to_device(TransferKind::serial, all)));
+  EXPECT_EQ(port.receive(all.size()), all);
+  const auto transfers = recording.finish();
+  EXPECT_EQ(received(transfers), all);
+  EXPECT_EQ(transfers.at(0).kind, TransferKind::serial);
+  EXPECT_EQ(transfers.at(0).stamped_by, StampedBy::arrival);
+}
+
+// What the device had written but the wire had not carried when it was pulled out is truly lost: each life
+// holds the beginning of what was sent in it, whole.
+TEST(Serial, PulledOutAndPutBackInMidStream) {
+  Receiver receiver;
+  receiver.gadget.plug();
+  ReturningSource source = returning(NodeKind::serial, receiver.id,
+                                     [](const auto& path) { return SerialSource::open(path, baud); });
+  DeviceDescription described;
+  described.id = receiver.id;
+  SessionRecording recording(described);
+  std::vector<Bytes> sent;
+  unsigned count = 0;
+  for (int life = 0; life <= replugs(); ++life) {
+    if (life > 0) receiver.gadget.plug();
+    const std::size_t begun = recording.size();
+    ASSERT_EQ(recording.drain_until(source, begun + 1), begun + 1) << "life " << life;
+    sent.emplace_back();
+    std::thread stream([&] {
+      Port port(receiver.gadget);
+      for (Bytes frame = numbered(count, 30); port.send(frame); frame = numbered(++count, 30)) {
+        sent.back().insert(sent.back().end(), frame.begin(), frame.end());
+        usleep(1000);  // as devices do, some thousand a second
+      }
+    });
+    recording.drain_until(source, begun + 5 + static_cast<std::size_t>(life % 7));
+    receiver.gadget.unplug();
+    stream.join();
+    while (recording.last().kind != TransferKind::unplugged)
+      ASSERT_TRUE(recording.drain_one(source))
+          << "life " << life << ": " << (recording.error() ? recording.error()->message : "silence");
+  }
+  const auto transfers = recording.finish();
+  std::size_t at = 0;
+  std::size_t total = 0;
+  for (const Bytes& life : sent) {
+    ASSERT_EQ(transfers.at(at++).kind, TransferKind::plugged);
+    Bytes arrived;
+    for (; transfers.at(at).kind == TransferKind::serial; ++at)
+      arrived.insert(arrived.end(), transfers[at].payload.begin(), transfers[at].payload.end());
+    EXPECT_GT(arrived.size(), 30u);
+    ASSERT_LE(arrived.size(), life.size() + 30);  // the frame whose sending failed may have left in part
+    const std::size_t sure = std::min(arrived.size(), life.size());
+    EXPECT_TRUE(
+        std::equal(arrived.begin(), arrived.begin() + static_cast<std::ptrdiff_t>(sure), life.begin()));
+    EXPECT_EQ(transfers.at(at++).kind, TransferKind::unplugged);
+    total += arrived.size();
+  }
+  EXPECT_EQ(at, transfers.size());
+  std::printf("figure: a USB serial port pulled out %d times in mid-stream, %zu bytes\n", replugs() + 1,
+              total);
+}
+
+}  // namespace
+}  // namespace fude::lab
