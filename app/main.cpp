@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   fude::add_demo(app, status);
   fude::add_replay(app, status);
   fude::add_import(app, status);
+  fude::add_export(app, status);
   fude::add_perform(app, status);
   fude::add_info(app, status);
   fude::add_devices(app, status);

@@ -223,7 +223,7 @@ SampleTable pose() {
                                                               FIELD(tracker_from_tool.rotation.z()))(
              "x_m", "m", FIELD(tracker_from_tool.translation[0]))("y_m", "m",
                                                                   FIELD(tracker_from_tool.translation[1]))(
-             "z_m", "m", FIELD(tracker_from_tool.translation[2]))("covariance", "rad², rad m, m², row by row",
+             "z_m", "m", FIELD(tracker_from_tool.translation[2]))("covariance", "rad² to m²",
                                                                   FIELD(covariance))(
              "residual_m", "m", FIELD(residual_m))("buttons", "", FIELD(buttons))("valid", "", FIELD(valid))(
              "after_gap", "", FIELD(after_gap))
@@ -234,7 +234,7 @@ SampleTable position() {
   return TableOf<PositionSample>("position")("marker", "", FIELD(marker))(
              "x_m", "m", FIELD(tracker_from_marker_m[0]))("y_m", "m", FIELD(tracker_from_marker_m[1]))(
              "z_m", "m", FIELD(tracker_from_marker_m[2]))(
-             "covariance_m2", "m², row by row", FIELD(covariance_m2))("residual_m", "m", FIELD(residual_m))(
+             "covariance_m2", "m²", FIELD(covariance_m2))("residual_m", "m", FIELD(residual_m))(
              "valid", "", FIELD(valid))("after_gap", "", FIELD(after_gap))
       .take();
 }

@@ -11,7 +11,7 @@ namespace fude {
 
 struct StreamSummary {
   std::string name;
-  std::string kind;  // "pen", "raw", "actions"
+  std::string kind;  // of the samples ("pen", "imu" …), "raw" or "actions"
   std::int64_t samples = 0;
   double rate_hz = 0;     // one over the median interval; 0 with fewer than two samples
   std::int64_t gaps = 0;  // places where input was lost

@@ -1,0 +1,81 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "capture/export/csv_export.h"
+#include "capture/session.h"
+
+namespace fude {
+namespace {
+
+struct Options {
+  std::string session, stream, to = "csv", out, at;
+  double span_ms = 100;
+  bool force = false;
+};
+
+Result<std::string> read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return failure(Fault::not_found, path + " cannot be read; give a table of times");
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+Result<std::string> table(const Options& options) {
+  const auto session = read_session(options.session);
+  if (!session) return tl::unexpected(session.error());
+  const auto stream = find_stream(*session, options.stream);
+  if (!stream) return tl::unexpected(stream.error());
+  if (options.at.empty()) return csv_of(*session, *stream);
+  const auto text = read_text(options.at);
+  if (!text) return tl::unexpected(text.error());
+  const auto times = read_times(*text);
+  if (!times) return failure(times.error().fault, options.at + ": " + times.error().message);
+  const auto span =
+      std::chrono::duration_cast<Duration>(std::chrono::duration<double, std::milli>(options.span_ms));
+  return poses_at(*session, *stream, *times, span);
+}
+
+Result<void> run(const Options& options) {
+  std::error_code ignored;
+  if (!options.out.empty() && !options.force && std::filesystem::exists(options.out, ignored))
+    return failure(Fault::exists, options.out + " exists already; choose another name or give --force");
+  const auto text = table(options);
+  if (!text) return tl::unexpected(text.error());
+  if (options.out.empty()) {
+    std::fwrite(text->data(), 1, text->size(), stdout);
+    return {};
+  }
+  std::ofstream file(options.out, std::ios::binary);
+  file << *text;
+  file.close();
+  if (!file)
+    return failure(Fault::storage, options.out + " cannot be written; check the folder and the disk");
+  return {};
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("export", "writes a stream of a session as a table");
+  command->add_option("SESSION", options->session, "a .fude session")->required();
+  command->add_option("--stream", options->stream, "as `fude info` names it, or its tool or kind alone")
+      ->required();
+  command->add_option("--to", options->to, "the format")->check(CLI::IsMember({"csv"}));
+  command->add_option("--out", options->out, "the file to write; without it the terminal");
+  command->add_option("--at", options->at, "a table with host_s or t_s: gives the poses at those times");
+  command
+      ->add_option("--span-ms", options->span_ms,
+                   "with --at: the longest time between two samples to interpolate")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_flag("--force", options->force, "replace an existing file");
+  command->callback([options, &status] {
+    if (const auto done = run(*options); !done) status = report(done.error());
+  });
+}
+
+}  // namespace fude
