@@ -11,23 +11,15 @@
 #include <utility>
 
 #include "drivers/transport/device_node.h"
+#include "drivers/transport/hid_descriptor.h"
 
 namespace fude {
 namespace {
 
-// HID 1.11, 6.2.2.2: the low two bits of an item's first byte say how much follows; 0xfe begins a long item.
+// A descriptor that does not parse is one that the kernel would not have bound.
 bool has_report_numbers(std::span<const std::byte> descriptor) {
-  constexpr unsigned long_item = 0xfe;
-  constexpr unsigned report_id = 0x84;
-  for (std::size_t at = 0; at < descriptor.size();) {
-    const unsigned head = std::to_integer<unsigned>(descriptor[at]);
-    if ((head & 0xfc) == report_id) return true;
-    if (head == long_item && at + 1 < descriptor.size())
-      at += 3 + std::to_integer<std::size_t>(descriptor[at + 1]);
-    else
-      at += 1 + ((head & 3) == 3 ? 4 : head & 3);
-  }
-  return false;
+  const auto parsed = hid::parse_descriptor(descriptor);
+  return parsed && parsed->numbered;
 }
 
 bool says_gone(int error) { return error == ENODEV || error == EIO || error == ESHUTDOWN; }

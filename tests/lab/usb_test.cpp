@@ -96,6 +96,8 @@ TEST(Usb, AFalconsFirmwareIsEchoed) {
     const Transfer& back = transfers[5 + 2 * i];
     EXPECT_EQ(sent.direction, Direction::to_device);
     EXPECT_EQ(back.direction, Direction::from_device);
+    EXPECT_EQ(sent.endpoint, out);
+    EXPECT_EQ(back.endpoint, in);
     ASSERT_EQ(back.payload.size(), chunk + 2);
     EXPECT_EQ(Bytes(back.payload.begin() + 2, back.payload.end()), numbered(i, chunk));
   }
