@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drivers/transport/hidraw_source.h"
+#include "drivers/transport/usb_hid_source.h"
 #include "drivers/transport/usb_source.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/byte_literals.h"
@@ -162,19 +163,38 @@ TEST(Usb, TransfersOfAnyLengthArriveWhole) {
   EXPECT_EQ(received, sent);
 }
 
-// The kernel's HID driver leaves the P5 Glove alone (hid-quirks.c): no hidraw node ever appears, so that it
-// is read as a USB device.
+// The kernel's HID driver leaves the P5 Glove alone (hid-quirks.c): no hidraw node ever appears.
 TEST(Usb, AP5GloveIsReadWithoutTheKernelsHidDriver) {
-  Usb glove({0x0d7f, 0x0100, "GLOVE1", "P5"}, {3, {{in, false, 24}}, vendor_reports(24)});
-  SessionRecording recording(glove.node.description);
+  const auto answer = [](const ScriptedRequest& request) -> std::optional<Bytes> {
+    if ((request.type & 0x80) == 0) return Bytes{};
+    if (request.value == 0x0306) return numbered(6, 30);
+    return std::nullopt;
+  };
+  std::unique_ptr<ScriptedDevice> glove;
+  const DeviceNode node = attached_node(NodeKind::usb, "0d7f:0100:GLOVE1", [&] {
+    glove =
+        std::make_unique<ScriptedDevice>(UsbIdentity{0x0d7f, 0x0100, "GLOVE1", "P5"}, 2,
+                                         ScriptedInterface{3, {{in, false, 24}}, vendor_reports(24)}, answer);
+  });
+  auto source = UsbHidSource::open(node.path, 0, true);
+  ASSERT_TRUE(source) << source.error().message;
+  SessionRecording recording(node.description);
+  EXPECT_TRUE((*source)->write(to_device(TransferKind::hid_feature, bytes({5, 0xff}))));
+  ASSERT_TRUE((*source)->write(to_device(TransferKind::hid_ask, bytes({6}))));
+  ASSERT_TRUE(recording.drain_one(**source));
+  EXPECT_FALSE((*source)->write(to_device(TransferKind::hid_ask, bytes({12}))));
+  recording.drain(**source);
   for (unsigned i = 0; i < 20; ++i) {
-    ASSERT_TRUE(glove.device->send(in, numbered(i, 24)));
-    ASSERT_TRUE(recording.drain_one(*glove.source));
+    ASSERT_TRUE(glove->send(in, numbered(i, 24)));
+    ASSERT_TRUE(recording.drain_one(**source));
   }
   const auto transfers = recording.finish();
+  ASSERT_EQ(transfers.size(), 21u);
+  EXPECT_EQ(transfers[0].kind, TransferKind::hid_feature);
+  EXPECT_EQ(transfers[0].payload, numbered(6, 30));
   for (unsigned i = 0; i < 20; ++i) {
-    EXPECT_EQ(transfers[i].kind, TransferKind::usb_interrupt);
-    EXPECT_EQ(transfers[i].payload, numbered(i, 24));
+    EXPECT_EQ(transfers[i + 1].kind, TransferKind::hid_report);
+    EXPECT_EQ(transfers[i + 1].payload, numbered(i, 24));
   }
 }
 
