@@ -38,7 +38,9 @@ constexpr FamilyRow rows[] = {
    multi_axis_controller, name},
 #include "drivers/spacemouse/models.inl"
 #undef SPACEMOUSE_MODEL
+    // The kernel's HID driver leaves the glove alone: live it is read over libusb, as reports all the same.
     {Family::p5glove, "p5glove", DeviceKind::glove, "usb", 0x0d7f, 0x0100, {}, "P5 Glove"},
+    {Family::p5glove, "p5glove", DeviceKind::glove, "hidraw", 0x0d7f, 0x0100, {}, "P5 Glove"},
     {Family::handle, "handle", DeviceKind::imu, "hidraw", 0x1209, 0x0001, brush_handle, "fude brush handle"},
     {Family::ultrasonic,
      "ultrasonic",

@@ -44,8 +44,9 @@ TEST(Tree, DocumentsNameFilesThatAreThere) {
   static const std::regex named(
       R"(`((?:app|calibration|capture|drivers|rig|share|signal|sim|tests|tools|docs)/[\w./-]+\.\w+)`)");
   std::vector<fs::path> documents{root / "README.md"};
-  for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
-    if (entry.path().extension() == ".md") documents.push_back(entry.path());
+  for (const char* folder : {"docs", "firmware-notes"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ".md") documents.push_back(entry.path());
   int names = 0;
   for (const fs::path& document : documents) {
     const std::string text = text_of(document);
