@@ -1,10 +1,7 @@
 // A serial port of a USB device on the kernel's virtual host, read and written by SerialSource.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <termios.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,6 +9,7 @@
 #include "drivers/transport/serial_source.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/byte_literals.h"
+#include "tests/lab/gadget_port.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/replugs.h"
 #include "tests/lab/session_recording.h"
@@ -21,38 +19,6 @@ namespace fude::lab {
 namespace {
 
 constexpr int baud = 115200;
-
-// The device's side of the port.
-class Port {
- public:
-  explicit Port(const UsbGadget& gadget) {
-    int number = 0;
-    std::ifstream(gadget.function("acm.lab") / "port_num") >> number;
-    file_ =
-        FileDescriptor(open(("/dev/ttyGS" + std::to_string(number)).c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
-    termios settings{};
-    tcgetattr(file_.get(), &settings);
-    cfmakeraw(&settings);
-    tcsetattr(file_.get(), TCSANOW, &settings);
-  }
-  bool send(const Bytes& sent) {
-    return write(file_.get(), sent.data(), sent.size()) == static_cast<ssize_t>(sent.size());
-  }
-  Bytes receive(std::size_t count) {
-    Bytes received(count);
-    std::size_t at = 0;
-    while (at < count) {
-      const ssize_t size = read(file_.get(), received.data() + at, count - at);
-      if (size <= 0) break;
-      at += static_cast<std::size_t>(size);
-    }
-    received.resize(at);
-    return received;
-  }
-
- private:
-  FileDescriptor file_;
-};
 
 // fude's ultrasonic receiver is known by pid.codes' second number for tests.
 struct Receiver {
@@ -79,7 +45,7 @@ TEST(Serial, EveryByteGoesThroughAsItIs) {
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().fault, Fault::busy);
 
-  Port port(receiver.gadget);
+  GadgetPort port(receiver.gadget);
   Bytes all;
   for (unsigned value = 0; value < 256; ++value) all.push_back(static_cast<std::byte>(value));
   SessionRecording recording(node.description);
@@ -112,7 +78,7 @@ TEST(Serial, PulledOutAndPutBackInMidStream) {
     ASSERT_EQ(recording.drain_until(source, begun + 1), begun + 1) << "life " << life;
     sent.emplace_back();
     std::thread stream([&] {
-      Port port(receiver.gadget);
+      GadgetPort port(receiver.gadget);
       for (Bytes frame = numbered(count, 30); port.send(frame); frame = numbered(++count, 30)) {
         sent.back().insert(sent.back().end(), frame.begin(), frame.end());
         usleep(1000);  // as devices do, some thousand a second
