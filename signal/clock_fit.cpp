@@ -15,6 +15,7 @@ constexpr double outlier_spreads = 6;
 constexpr double jump_spreads = 10;
 constexpr double smallest_spread_s = 1e-6;       // stamps are often cut to microseconds
 constexpr double gaussian_from_median = 1.4826;  // standard deviation over the median of |x|
+constexpr double farthest_s = 4e9;               // whoever counts further does not count time
 constexpr double gaussian_from_mean = 1.2533;    // and over its mean
 
 double quantile(std::vector<double>& values, double share) {
@@ -31,7 +32,19 @@ ResidualQuantiles quantiles(std::vector<double> distances) {
           *std::max_element(distances.begin(), distances.end())};
 }
 
-Duration nanoseconds(double s) { return Duration(std::llround(s * 1e9)); }
+// Times of any 64 bits: beyond 292 years apart they go round instead of overflowing.
+double between(Timestamp from, Timestamp to) {
+  return seconds(
+      Duration(static_cast<std::int64_t>(static_cast<std::uint64_t>(to.time_since_epoch().count()) -
+                                         static_cast<std::uint64_t>(from.time_since_epoch().count()))));
+}
+
+Timestamp after(Timestamp from, double s) {
+  const auto ns = static_cast<std::uint64_t>(
+      std::llround(std::isfinite(s) ? std::clamp(s, -farthest_s, farthest_s) * 1e9 : 0));
+  return Timestamp(
+      Duration(static_cast<std::int64_t>(static_cast<std::uint64_t>(from.time_since_epoch().count()) + ns)));
+}
 
 double biweight(double residual, double spread) {
   const double u = residual / (outlier_spreads * spread);
@@ -98,7 +111,7 @@ std::int64_t ClockLine::ticks(std::uint64_t tick, Timestamp near) const {
   const std::uint64_t wrap = std::uint64_t{1} << counter_bits;
   const auto forward = static_cast<std::int64_t>((tick - first_tick) & (wrap - 1));
   if (!(tick_s > 0)) return forward;
-  const double expected = seconds(near - offset) / tick_s;
+  const double expected = between(offset, near) / tick_s;
   const double turns = std::round((expected - static_cast<double>(forward)) / static_cast<double>(wrap));
   if (!(std::abs(turns) < 0x1p62 / static_cast<double>(wrap))) return forward;
   return forward + static_cast<std::int64_t>(turns) * static_cast<std::int64_t>(wrap);
@@ -106,8 +119,7 @@ std::int64_t ClockLine::ticks(std::uint64_t tick, Timestamp near) const {
 
 Timestamp ClockLine::host(std::uint64_t tick, Timestamp near) const {
   const double s = tick_s * static_cast<double>(ticks(tick, near));
-  constexpr double farthest_s = 4e9;  // whoever counts further does not count time
-  return std::abs(s) < farthest_s ? offset + nanoseconds(s) : near;
+  return std::abs(s) < farthest_s ? after(offset, s) : near;
 }
 
 std::optional<double> ClockLine::drift_ppm() const {
@@ -126,8 +138,8 @@ double ClockFitter::jump_s() const {
 bool ClockFitter::strange(const ClockReading& reading) const {
   if (line_.readings < settled_readings && !options_.clock.nominal_tick)
     return options_.clock.counter_bits >= 64 && reading.tick < young_.back().tick;
-  return std::abs(seconds(reading.host - line_.host(reading.tick, reading.host))) > jump_s() ||
-         std::abs(line_.tick_s * static_cast<double>(line_.ticks(reading.tick, reading.host))) > 4e9;
+  return std::abs(between(line_.host(reading.tick, reading.host), reading.host)) > jump_s() ||
+         std::abs(line_.tick_s * static_cast<double>(line_.ticks(reading.tick, reading.host))) > farthest_s;
 }
 
 bool ClockFitter::restarted() const {
@@ -140,14 +152,14 @@ bool ClockFitter::restarted() const {
   double low = 0, high = 0, run_s = 0;
   for (const ClockReading& d : doubtful_) {
     const double ticks_s = anew.tick_s * static_cast<double>(anew.ticks(d.tick, d.host));
-    const double off = seconds(d.host - first.host) - ticks_s;
+    const double off = between(first.host, d.host) - ticks_s;
     low = std::min(low, off);
     high = std::max(high, off);
     run_s = ticks_s;
   }
   const double jump = jump_s();
   // Both clocks must have gone on: what had piled up while the host was busy comes all at once.
-  return high - low < jump && std::min(run_s, seconds(doubtful_.back().host - first.host)) >= 2 * jump;
+  return high - low < jump && std::min(run_s, between(first.host, doubtful_.back().host)) >= 2 * jump;
 }
 
 void ClockFitter::restart(std::span<const ClockReading> readings) {
@@ -174,9 +186,9 @@ void ClockFitter::restart(std::span<const ClockReading> readings) {
 void ClockFitter::refit() {
   std::vector<Point> points;
   for (const ClockReading& y : young_)
-    points.push_back({static_cast<double>(line_.ticks(y.tick, y.host)), seconds(y.host - line_.since)});
+    points.push_back({static_cast<double>(line_.ticks(y.tick, y.host)), between(line_.since, y.host)});
   const RobustLine fit = robust_line(points, line_.tick_s);
-  line_.offset = line_.since + nanoseconds(fit.offset_s);
+  line_.offset = after(line_.since, fit.offset_s);
   line_.tick_s = fit.slope;
   spread_s_ = fit.spread_s;
   weight_ = mean_tick_ = mean_host_s_ = tick_tick_ = tick_host_ = 0;
@@ -214,7 +226,7 @@ void ClockFitter::move_line(double ticks, double host_s, double residual_s) {
 FittedReading ClockFitter::add(const ClockReading& reading) {
   const auto answer = [&] {
     const Timestamp fitted = line_.host(reading.tick, reading.host);
-    const double off = std::abs(seconds(reading.host - fitted));
+    const double off = std::abs(between(fitted, reading.host));
     return FittedReading{closed_.size(), fitted,
                          off > outlier_spreads * std::max(spread_s_, smallest_spread_s)};
   };
@@ -247,13 +259,13 @@ FittedReading ClockFitter::add(const ClockReading& reading) {
   }
   const FittedReading before = answer();
   const double ticks = static_cast<double>(line_.ticks(reading.tick, reading.host));
-  const double host_s = seconds(reading.host - line_.since);
-  const double residual = seconds(reading.host - before.fitted);
+  const double host_s = between(line_.since, reading.host);
+  const double residual = between(before.fitted, reading.host);
   remember(residual);
   line_.outliers += before.outlier;
   move_line(ticks, host_s, residual);
   if (tick_tick_ > 0) line_.tick_s = tick_host_ / tick_tick_;
-  line_.offset = line_.since + nanoseconds(mean_host_s_ - line_.tick_s * mean_tick_);
+  line_.offset = after(line_.since, mean_host_s_ - line_.tick_s * mean_tick_);
   // A stream that grows restless widens the spread, one wild reading hardly does.
   const double distance = std::min(std::abs(residual), 3 * spread_s_) * gaussian_from_mean;
   spread_s_ = std::max(smallest_spread_s, spread_s_ + (distance - spread_s_) / 64);
@@ -279,16 +291,16 @@ ClockFit fit_clock(std::span<const ClockReading> readings, const ClockFitOptions
     const auto run = readings.subspan(line.first_reading, end - line.first_reading);
     std::vector<Point> points;
     for (const ClockReading& r : run)
-      points.push_back({static_cast<double>(line.ticks(r.tick, r.host)), seconds(r.host - line.since)});
+      points.push_back({static_cast<double>(line.ticks(r.tick, r.host)), between(line.since, r.host)});
     const RobustLine robust = robust_line(points, line.tick_s);
-    line.offset = line.since + nanoseconds(robust.offset_s);
+    line.offset = after(line.since, robust.offset_s);
     line.tick_s = robust.slope;
     line.readings = run.size();
     line.outliers = 0;
     std::vector<double> distances;
     for (const ClockReading& r : run) {
       const Timestamp fitted = line.host(r.tick, r.host);
-      distances.push_back(std::abs(seconds(r.host - fitted)));
+      distances.push_back(std::abs(between(fitted, r.host)));
       const bool outlier = distances.back() > outlier_spreads * robust.spread_s;
       line.outliers += outlier;
       fit.readings.push_back({i, fitted, outlier});

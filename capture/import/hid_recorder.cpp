@@ -82,7 +82,7 @@ bool numbers_reports(std::span<const std::byte> descriptor) {
   while (!descriptor.empty()) {
     const auto prefix = std::to_integer<unsigned>(descriptor[0]);
     if ((prefix & 0xfc) == 0x84) return true;
-    std::size_t length = std::array{0, 1, 2, 4}[prefix & 3];
+    std::size_t length = std::array<std::size_t, 4>{0, 1, 2, 4}[prefix & 3];
     if (prefix == 0xfe && descriptor.size() > 1) length = std::to_integer<std::size_t>(descriptor[1]) + 2;
     if (descriptor.size() <= length) return false;
     descriptor = descriptor.subspan(length + 1);

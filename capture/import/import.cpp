@@ -92,6 +92,14 @@ Error at(const std::filesystem::path& file, Error error) {
   return error;
 }
 
+// A message may quote a stranger's bytes: it stays one line all the same.
+Error printable(Error error) {
+  std::replace_if(
+      error.message.begin(), error.message.end(), [](char c) { return c >= 0 && (c < ' ' || c == 127); },
+      '?');
+  return error;
+}
+
 Result<std::string> read_whole(const std::filesystem::path& file) {
   std::error_code status;
   if (std::filesystem::is_directory(file, status))
@@ -198,7 +206,7 @@ Result<ImportedFile> import_bytes(std::string_view bytes, const ImportOptions& o
                    "not a recording that this program knows; name its format with --from (" + names + ")");
   }
   auto recordings = row_of(*format).read(*text, options);
-  if (!recordings) return tl::unexpected(recordings.error());
+  if (!recordings) return tl::unexpected(printable(recordings.error()));
   return ImportedFile{*format, std::nullopt, std::move(*recordings)};
 }
 

@@ -9,6 +9,8 @@ constexpr std::size_t most_fields = 4096;
 constexpr std::size_t most_nested = 64;
 constexpr std::uint32_t most_report_bits = 8 * 8192;
 
+constexpr std::array<std::size_t, 4> item_bytes{0, 1, 2, 4};
+
 // Tag and type of an item: its first byte without the length.
 enum Item : std::uint8_t {
   input = 0x80,
@@ -61,8 +63,7 @@ class Parser {
       const std::uint8_t prefix = octet(bytes, 0);
       const bool long_item = prefix == 0xfe;
       if (long_item && bytes.size() < 2) return cut();
-      const std::size_t length =
-          long_item ? octet(bytes, 1) + std::size_t{2} : std::array{0, 1, 2, 4}[prefix & 3];
+      const std::size_t length = long_item ? octet(bytes, 1) + std::size_t{2} : item_bytes[prefix & 3];
       if (bytes.size() < length + 1) return cut();
       if (!long_item && !take(prefix & 0xfc, bytes.subspan(1, length))) return tl::unexpected(wrong_);
       bytes = bytes.subspan(length + 1);

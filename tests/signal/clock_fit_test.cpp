@@ -155,7 +155,7 @@ TEST(ClockFit, TimesAndTicksOfAnyKindAreSafe) {
   for (const int bits : {8, 16, 32, 64}) {
     std::vector<ClockReading> readings;
     for (int i = 0; i < 3000; ++i)
-      readings.push_back({Timestamp(Duration(static_cast<std::int64_t>(random() >> 2))), random()});
+      readings.push_back({Timestamp(Duration(static_cast<std::int64_t>(random()))), random()});
     const ClockFit fit = fit_clock(readings, {.clock = {.counter_bits = bits}});
     EXPECT_EQ(fit.readings.size(), readings.size());
     for (const ClockLine& line : fit.lines) EXPECT_TRUE(std::isfinite(line.tick_s));

@@ -68,6 +68,14 @@ TEST(Recognise, ByContent) {
   EXPECT_FALSE(recognise(""));
 }
 
+TEST(ImportBytes, AMessageThatQuotesAStrangersBytesIsOneLine) {
+  ImportOptions options;
+  options.format = ImportFormat::libinput;
+  const auto imported = import_bytes("version: \"\\\n\"\n\"\\\x01", options);
+  ASSERT_FALSE(imported.has_value());
+  EXPECT_EQ(imported.error().message.find_first_of("\n\x01"), std::string::npos) << imported.error().message;
+}
+
 TEST(ImportBytes, GzipIsUnpacked) {
   const auto imported = import_bytes(packed(std::string(description) + events), {});
   ASSERT_TRUE(imported) << imported.error().message;
