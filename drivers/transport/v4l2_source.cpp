@@ -187,15 +187,16 @@ Result<std::optional<Transfer>> V4l2Source::read(std::optional<Timestamp> deadli
     if (auto transfer = inbox_.take()) return transfer;
     if (gone_) return failure(Fault::device_gone, node_.string() + " was unplugged; plug it in again");
     const Inbox::Outcome outcome = inbox_.wait(file_.get(), deadline);
-    if (outcome.ready || outcome.gone) take_picture();
+    if (outcome.ready || outcome.gone) take_picture(outcome.gone);
     if (outcome.woken || outcome.late) return inbox_.take();
   }
 }
 
-void V4l2Source::take_picture() {
+// EIO alone is a picture that came to nothing; from a queue that has failed as a whole it comes for ever.
+void V4l2Source::take_picture(bool hung_up) {
   v4l2_buffer buffer = capture_buffer();
   if (ask(file_.get(), VIDIOC_DQBUF, &buffer) < 0) {
-    if (errno != EAGAIN) unplugged();
+    if (errno != EAGAIN && (errno != EIO || hung_up)) unplugged();
     return;
   }
   const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;

@@ -56,7 +56,7 @@ class V4l2Source final : public ByteSource {
   std::optional<std::int32_t> hold(std::uint32_t automatic, std::int32_t off, std::uint32_t control,
                                    std::int32_t value);
   Result<void> start();
-  void take_picture();
+  void take_picture(bool hung_up);
   void unplugged();
 
   FileDescriptor file_;

@@ -79,7 +79,7 @@ TEST_P(FamilyFaults, WithoutAnyEachReportIsASample) {
 
 // A stream of bytes may be read in any pieces: the very same samples.
 TEST_P(FamilyFaults, ShortReads) {
-  if (!stream_.in_bytes) GTEST_SKIP() << "its reports come whole";
+  if (!stream_.in_bytes) return;  // its reports come whole
   const auto whole = decoded_all(*greeted(), stream_.reports);
   for (const std::size_t size : {1u, 2u, 3u, 7u, 31u}) {
     std::vector<Transfer> pieces;

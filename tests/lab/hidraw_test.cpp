@@ -229,8 +229,9 @@ TEST(UsbHid, PulledOutAndPutBackInMidStream) {
     EXPECT_EQ(transfers.at(at++).kind, TransferKind::unplugged);
   }
   EXPECT_EQ(at, transfers.size());
-  std::printf("figure: a USB HID device pulled out %d times in mid-stream, %zu reports\n", replugs() + 1,
-              reports);
+  std::printf(
+      "figure: a USB HID device pulled out %d times in mid-stream, %zu reports, %zu lost by the kernel\n",
+      replugs() + 1, reports, lost);
 }
 
 }  // namespace
