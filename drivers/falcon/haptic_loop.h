@@ -26,6 +26,7 @@ class MonotonicLoopClock final : public LoopClock {
   void sleep_until(Timestamp time) override;
 };
 
+// The decoder does not poll (see there), and its greeting has been sent.
 class HapticLoop {
  public:
   // The force at the grip for this sample, newtons; it is asked once a sample, when the arm is homed, and may
