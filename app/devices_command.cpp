@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -13,10 +14,61 @@
 #include "app/interrupt.h"
 #include "drivers/tablet/identify.h"
 #include "drivers/transport/device_node.h"
-#include "drivers/transport/evdev_devices.h"
+#include "rig/attached_devices.h"
 
 namespace fude {
 namespace {
+
+constexpr NodeKind node_kinds[] = {NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video};
+
+const char* kind_words(DeviceKind kind) {
+  switch (kind) {
+    case DeviceKind::pen_tablet:
+      return "pen tablet";
+    case DeviceKind::touch:
+      return "touch surface";
+    case DeviceKind::tracker:
+      return "6-DOF tracker";
+    case DeviceKind::imu:
+      return "inertial unit";
+    case DeviceKind::ultrasonic:
+      return "ultrasonic receiver";
+    case DeviceKind::puck:
+      return "6-axis controller";
+    case DeviceKind::glove:
+      return "glove";
+    case DeviceKind::haptic:
+      return "force-feedback arm";
+    case DeviceKind::camera:
+      return "camera";
+    default:
+      return "other";
+  }
+}
+
+std::vector<std::string> senses(const DeviceDescription& device) {
+  switch (device.kind) {
+    case DeviceKind::pen_tablet:
+    case DeviceKind::touch:
+      return capabilities(device);
+    case DeviceKind::tracker:
+      return {"position", "orientation"};
+    case DeviceKind::imu:
+      return {"turn-rate", "acceleration", "buttons"};
+    case DeviceKind::ultrasonic:
+      return {"ranges"};
+    case DeviceKind::puck:
+      return {"push", "turn", "buttons"};
+    case DeviceKind::glove:
+      return {"bend", "lights", "buttons"};
+    case DeviceKind::haptic:
+      return {"position", "force", "buttons"};
+    case DeviceKind::camera:
+      return {"pictures"};
+    default:
+      return {};
+  }
+}
 
 std::string four_digits(std::uint16_t number) {
   char text[8];
@@ -24,16 +76,18 @@ std::string four_digits(std::uint16_t number) {
   return text;
 }
 
-nlohmann::ordered_json as_json(const FoundDevice& found) {
+nlohmann::ordered_json as_json(const AttachedDevice& found) {
   const DeviceDescription& device = found.description;
   return {{"id", device.id},
           {"name", device.name},
-          {"kind", "pen tablet"},
+          {"kind", kind_words(device.kind)},
+          {"driver", found.family->word},
           {"transport", device.transport},
+          {"node", found.node.string()},
           {"vendor", four_digits(device.vendor)},
           {"product", four_digits(device.product)},
           {"serial", device.serial},
-          {"capabilities", capabilities(device)},
+          {"capabilities", senses(device)},
           {"rate_hz", found.rate_hz ? nlohmann::ordered_json(*found.rate_hz) : nlohmann::ordered_json()},
           {"access", found.access}};
 }
@@ -42,71 +96,112 @@ std::string text_of(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-void print(const FoundDevice& found) {
-  std::string senses;
-  for (const std::string& word : capabilities(found.description)) senses += " " + word;
-  std::printf("%s  %s  %s  senses%s\n", found.node.c_str(), found.description.id.c_str(),
-              found.description.name.c_str(), senses.c_str());
+void print(const AttachedDevice& found) {
+  std::string words;
+  for (const std::string& word : senses(found.description)) words += " " + word;
+  std::printf("%s  %s  %s  %s, senses%s\n", found.node.c_str(), found.description.id.c_str(),
+              found.description.name.c_str(), kind_words(found.description.kind), words.c_str());
   if (!found.access) std::printf("  %s\n", access_advice(found.node).c_str());
 }
 
-void print(const PlugEvent& event, bool json) {
-  if (json) {
-    nlohmann::ordered_json line{{"event", event.plugged ? "plugged" : "unplugged"},
-                                {"node", event.node.string()}};
-    if (event.tablet) line["device"] = as_json(*event.tablet);
-    std::printf("%s\n", text_of(line, -1).c_str());
-  } else if (event.tablet) {
-    std::printf("plugged in: ");
-    print(*event.tablet);
-  } else {
-    std::printf("unplugged: %s\n", event.node.c_str());
-  }
-  std::fflush(stdout);
-}
+// Tells of devices that come, and of the nodes of devices that go. Two threads tell it.
+class Telling {
+ public:
+  Telling(std::vector<AttachedDevice> known, bool json) : known_(std::move(known)), json_(json) {}
 
-// Tells of tablets that come, and of the nodes of tablets that go, until Ctrl-C.
-int watch(PlugMonitor& monitor, std::vector<FoundDevice> known, bool json, InterruptWatch& interrupt) {
+  void plugged(const std::optional<AttachedDevice>& device) {
+    const std::lock_guard lock(mutex_);
+    if (!device || find(device->node) != known_.end()) return;
+    if (json_)
+      tell({{"event", "plugged"}, {"node", device->node.string()}, {"device", as_json(*device)}});
+    else
+      std::printf("plugged in: "), print(*device), std::fflush(stdout);
+    known_.push_back(*device);
+  }
+  void unplugged(const std::filesystem::path& node) {
+    const std::lock_guard lock(mutex_);
+    const auto at = find(node);
+    if (at == known_.end()) return;
+    if (json_)
+      tell({{"event", "unplugged"}, {"node", node.string()}});
+    else
+      std::printf("unplugged: %s\n", node.c_str()), std::fflush(stdout);
+    known_.erase(at);
+  }
+
+ private:
+  std::vector<AttachedDevice>::iterator find(const std::filesystem::path& node) {
+    return std::ranges::find(known_, node, &AttachedDevice::node);
+  }
+  static void tell(const nlohmann::ordered_json& line) {
+    std::printf("%s\n", text_of(line, -1).c_str());
+    std::fflush(stdout);
+  }
+
+  std::mutex mutex_;
+  std::vector<AttachedDevice> known_;
+  bool json_;
+};
+
+// Until Ctrl-C.
+int watch(PlugMonitor& inputs, NodeMonitor& nodes, Telling& telling, InterruptWatch& interrupt) {
   std::atomic<bool> ended{false};
-  std::thread watching([&] {
-    while (!ended) {
-      const auto event = monitor.next(std::nullopt);
-      if (!event) continue;
-      const auto same = [&](const FoundDevice& device) { return device.node == event->node; };
-      const auto at = std::find_if(known.begin(), known.end(), same);
-      if (event->plugged && event->tablet && at == known.end()) {
-        print(*event, json);
-        known.push_back(*event->tablet);
-      } else if (!event->plugged && at != known.end()) {
-        print(*event, json);
-        known.erase(at);
+  std::thread watching_inputs([&] {
+    while (!ended)
+      if (const auto event = inputs.next(std::nullopt)) {
+        if (event->plugged && event->device) telling.plugged(attached(*event->device));
+        if (!event->plugged) telling.unplugged(event->node);
       }
-    }
+  });
+  std::thread watching_nodes([&] {
+    while (!ended)
+      if (const auto event = nodes.next(std::nullopt)) {
+        if (event->plugged)
+          telling.plugged(attached(event->node));
+        else
+          telling.unplugged(event->node.path);
+      }
   });
   interrupt.wait(std::nullopt);
   ended = true;
-  monitor.wake();
-  watching.join();
+  inputs.wake();
+  nodes.wake();
+  watching_inputs.join();
+  watching_nodes.join();
   return 130;
 }
 
-int list(bool json, bool watching) {
-  InterruptWatch interrupt;
-  // The monitor first, so that nothing plugged in meanwhile is missed.
-  auto monitor = watching ? PlugMonitor::open() : Result<std::unique_ptr<PlugMonitor>>(nullptr);
-  if (!monitor) return report(monitor.error());
-  const auto found = find_pen_tablets();
-  if (!found) return report(found.error());
+void print_all(const std::vector<AttachedDevice>& devices, bool json, int indent) {
   if (json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const FoundDevice& device : *found) all.push_back(as_json(device));
-    std::printf("%s\n", text_of(all, watching ? -1 : 2).c_str());
+    for (const AttachedDevice& device : devices) all.push_back(as_json(device));
+    std::printf("%s\n", text_of(all, indent).c_str());
   } else {
-    for (const FoundDevice& device : *found) print(device);
-    if (found->empty()) std::printf("no pen tablet is plugged in\n");
+    for (const AttachedDevice& device : devices) print(device);
+    if (devices.empty()) std::printf("no device that fude knows is plugged in\n");
   }
   std::fflush(stdout);
-  return watching ? watch(**monitor, *found, json, interrupt) : 0;
+}
+
+int list(bool json) {
+  const auto found = attached_devices();
+  if (!found) return report(found.error());
+  print_all(*found, json, 2);
+  return 0;
+}
+
+int list_and_watch(bool json) {
+  InterruptWatch interrupt;  // before any thread starts
+  // The monitors first, so that nothing plugged in meanwhile is missed.
+  auto inputs = PlugMonitor::open();
+  if (!inputs) return report(inputs.error());
+  auto nodes = NodeMonitor::open(node_kinds);
+  if (!nodes) return report(nodes.error());
+  const auto found = attached_devices();
+  if (!found) return report(found.error());
+  print_all(*found, json, -1);
+  Telling telling(*found, json);
+  return watch(**inputs, **nodes, telling, interrupt);
 }
 
 }  // namespace
@@ -117,10 +212,11 @@ void add_devices(CLI::App& app, int& status) {
     bool watch = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("devices", "lists the pen tablets that are plugged in");
+  CLI::App* command = app.add_subcommand("devices", "lists the devices that are plugged in");
   command->add_flag("--json", options->json, "as JSON; with --watch one line an event");
   command->add_flag("--watch", options->watch, "follow plugging in and out until Ctrl-C");
-  command->callback([options, &status] { status = list(options->json, options->watch); });
+  command->callback(
+      [options, &status] { status = options->watch ? list_and_watch(options->json) : list(options->json); });
 }
 
 }  // namespace fude

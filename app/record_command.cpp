@@ -1,10 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "rig/named_device.h"
 #include "rig/record_session.h"
 
 namespace fude {
@@ -12,13 +16,57 @@ namespace {
 
 struct Options {
   std::string out;
+  std::vector<std::string> named;
+  std::string report;
   double seconds = 0;  // 0: until Ctrl-C
   bool force = false;
 };
 
+using Json = nlohmann::ordered_json;
+
+// Of the latest run of the device's clock.
+Json clock_fit(const std::vector<ClockLine>& lines) {
+  if (lines.empty() || lines.back().readings < 2) return nullptr;
+  const ClockLine& line = lines.back();
+  const auto drift = line.drift_ppm();
+  return {{"offset_ns", line.offset.time_since_epoch().count()},
+          {"drift_ppm", drift ? Json(*drift) : Json()},
+          {"residual_us", line.residual_s.p50 * 1e6}};
+}
+
+Json as_json(const std::vector<RecordedStream>& streams) {
+  Json all = Json::object();
+  for (const RecordedStream& s : streams)
+    all[s.device] = {{"expected", s.expected},
+                     {"received", s.received},
+                     {"dropped", s.dropped},
+                     {"gaps", s.figures.gaps},
+                     {"rate_hz", s.figures.rate_hz},
+                     {"jitter_us",
+                      {{"p50", s.figures.jitter_us.p50},
+                       {"p99", s.figures.jitter_us.p99},
+                       {"max", s.figures.jitter_us.largest}}},
+                     {"clock_fit", clock_fit(s.figures.clock)}};
+  return {{"streams", all}};
+}
+
+int write_report(const std::string& path, const std::vector<RecordedStream>& streams) {
+  std::ofstream file(path);
+  file << as_json(streams).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  file.flush();
+  if (file) return 0;
+  return report({Fault::storage, path + " cannot be written; choose another name for the report"});
+}
+
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  auto recording = RecordingSession::start(options.out, options.force, [](const std::string& warning) {
+  RecordingWish wish{.overwrite = options.force, .named = {}};
+  for (const std::string& name : options.named) {
+    auto device = named_device(name);
+    if (!device) return report(device.error());
+    wish.named.push_back(std::move(*device));
+  }
+  auto recording = RecordingSession::start(options.out, std::move(wish), [](const std::string& warning) {
     std::fprintf(stderr, "fude: %s\n", warning.c_str());
   });
   if (!recording) return report(recording.error());
@@ -33,6 +81,8 @@ int record(const Options& options) {
     std::printf("%s: expected %lld, received %lld, dropped %lld\n", stream.device.c_str(),
                 static_cast<long long>(stream.expected), static_cast<long long>(stream.received),
                 static_cast<long long>(stream.dropped));
+  if (!options.report.empty())
+    if (const int failed = write_report(options.report, *streams); failed != 0) return failed;
   return interrupted ? 130 : 0;
 }
 
@@ -40,10 +90,14 @@ int record(const Options& options) {
 
 void add_record(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("record", "records the tablets that are plugged in");
+  CLI::App* command = app.add_subcommand("record", "records every device that is plugged in");
   command->add_option("--out", options->out, "the session to write (.fude)")->required();
+  command->add_option("--add", options->named,
+                      "a device that is not found by itself: fastrak:/dev/ttyS0@115200, "
+                      "openigtlink:HOST:PORT, vrpn:HOST …; may be given again");
   command->add_option("--seconds", options->seconds, "how long; without it until Ctrl-C")
       ->check(CLI::Range(0.001, 1e6));
+  command->add_option("--report", options->report, "a JSON file of what each stream gave");
   command->add_flag("--force", options->force, "replace an existing session");
   command->callback([options, &status] { status = record(*options); });
 }

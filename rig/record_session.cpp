@@ -3,56 +3,91 @@
 #include <algorithm>
 #include <utility>
 
+#include "capture/sample_columns.h"
 #include "drivers/transport/device_node.h"
 
 namespace fude {
+namespace {
 
-Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
-    const std::filesystem::path& session, bool overwrite, std::function<void(const std::string&)> warn) {
-  // Before the file is made: a session of nothing helps nobody.
-  const auto found = find_pen_tablets();
+// The recorder numbers devices from 1 in the order in which they are added, the rig from 0.
+DeviceNumber number(std::size_t device) { return static_cast<DeviceNumber>(device) + 1; }
+
+// Before the file is made: a session of nothing helps nobody.
+Result<void> something_to_record() {
+  const auto found = attached_devices();
   if (!found) return tl::unexpected(found.error());
   if (found->empty())
-    return failure(Fault::not_found, "no pen tablet is plugged in; plug one in and try again");
-  if (std::none_of(found->begin(), found->end(), [](const FoundDevice& device) { return device.access; }))
+    return failure(Fault::not_found,
+                   "no device that fude knows is plugged in; plug one in, or name one with --add");
+  if (std::ranges::none_of(*found, &AttachedDevice::access))
     return failure(Fault::no_access, access_advice(found->front().node));
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
+    const std::filesystem::path& session, RecordingWish wish, std::function<void(const std::string&)> warn) {
+  if (wish.named.empty())
+    if (auto there = something_to_record(); !there) return tl::unexpected(there.error());
 
   std::error_code ignored;
-  if (overwrite && std::filesystem::is_regular_file(session, ignored))
+  if (wish.overwrite && std::filesystem::is_regular_file(session, ignored))
     std::filesystem::remove(session, ignored);
   auto recorder = Recorder::open(session);
   if (!recorder) return tl::unexpected(recorder.error());
   std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder)));
   RecordingSession* raw = recording.get();
-  TabletListener listener;
-  // The recorder numbers devices from 1 in the order in which they are added, tablets from 0.
-  const auto number = [](std::size_t tablet) { return static_cast<DeviceNumber>(tablet) + 1; };
-  listener.appeared = [raw](std::size_t, const DeviceDescription& device) {
-    raw->names_.push_back(device.name);
-    raw->recorder_->add(device);
-  };
-  listener.heard = [raw, number](std::size_t tablet, const Transfer& transfer,
-                                 const std::optional<PenSample>& sample) {
-    raw->recorder_->add(RecordedTransfer{number(tablet), transfer});
-    if (sample) raw->recorder_->add(RecordedPen{0, number(tablet), *sample, std::nullopt});
+  DeviceListener listener;
+  listener.appeared = [raw](std::size_t, const DeviceDescription& device) { raw->begin(device); };
+  listener.heard = [raw](std::size_t device, const Transfer& transfer, std::span<const Sample> samples) {
+    raw->keep(device, transfer, samples);
   };
   listener.refused = [warn](const Error& error) { warn(error.message); };
-  auto tablets = Tablets::open(std::move(listener));
-  if (!tablets) return tl::unexpected(tablets.error());
-  recording->tablets_ = std::move(*tablets);
+  auto devices = Devices::open(std::move(listener), {.wanted = {}, .named = std::move(wish.named)});
+  if (!devices) return tl::unexpected(devices.error());
+  recording->devices_ = std::move(*devices);
   return recording;
 }
 
+void RecordingSession::begin(const DeviceDescription& device) {
+  recorder_->add(device);
+  const std::lock_guard lock(mutex_);
+  const auto same = std::ranges::count_if(streams_, [&](const auto& s) {
+    return s->name == device.name || s->name.starts_with(device.name + " ");
+  });
+  const std::string name = same == 0 ? device.name : device.name + " " + std::to_string(same + 1);
+  streams_.push_back(std::make_unique<Stream>(Stream{name, StreamMeter(device.clock)}));
+}
+
+void RecordingSession::keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples) {
+  recorder_->add(RecordedTransfer{number(device), transfer});
+  Stream* stream = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    stream = streams_[device].get();
+  }
+  for (const Sample& sample : samples) {
+    stream->meter.add(time_of(sample), after_gap(sample));
+    if (const auto* pen = std::get_if<PenSample>(&sample))
+      recorder_->add(RecordedPen{0, number(device), *pen, std::nullopt});
+    else
+      recorder_->add(RecordedSample{number(device), sample, 0});
+  }
+}
+
 Result<std::vector<RecordedStream>> RecordingSession::finish() {
-  tablets_->stop();
+  devices_->stop();
   std::vector<RecordedStream> streams;
-  const std::vector<DecodeCounts> counts = tablets_->counts();
+  const std::vector<ReportCounts> counts = devices_->counts();
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto dropped = static_cast<std::int64_t>(counts[i].lost);
-    const auto received = static_cast<std::int64_t>(counts[i].frames);
-    // A stale frame after a drop is counted among the frames and among the lost.
-    streams.push_back({names_[i], received, received - dropped, dropped});
-    recorder_->add(Receipt{static_cast<DeviceNumber>(i) + 1, received, received - dropped, dropped});
+    const auto received = static_cast<std::int64_t>(counts[i].reports);
+    streams.push_back(
+        {streams_[i]->name, received + dropped, received, dropped, streams_[i]->meter.figures()});
+    recorder_->add(Receipt{number(i), received + dropped, received, dropped});
+    for (const ClockLine& line : streams.back().figures.clock)
+      recorder_->add(RecordedClockFit{number(i), "", line});
   }
   if (auto closed = recorder_->close(); !closed) return tl::unexpected(closed.error());
   return streams;

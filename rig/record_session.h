@@ -1,44 +1,60 @@
-// A session recorded from the tablets that are plugged in.
+// A session recorded from every device that is plugged in.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "rig/devices.h"
 #include "rig/recorder.h"
-#include "rig/tablets.h"
+#include "rig/stream_meter.h"
 #include "signal/result.h"
 
 namespace fude {
 
-// What a tablet should have sent, what came, and what was lost on the way, in reports.
+// What a device should have sent, what came, and what was lost on the way, in reports.
 struct RecordedStream {
-  std::string device;
+  std::string device;  // its name; "NAME 2" for the second of a name
   std::int64_t expected = 0;
   std::int64_t received = 0;
   std::int64_t dropped = 0;
+  StreamFigures figures;
+};
+
+struct RecordingWish {
+  bool overwrite = false;  // an existing session, and only when there is something to record
+  std::vector<NamedDevice> named;
 };
 
 class RecordingSession {
  public:
-  // Records every tablet that is there or comes; an existing session is replaced only with `overwrite`,
-  // and only when there is a tablet to record. `warn` gets what the painter should know meanwhile,
-  // from any thread. Errors: not_found where no tablet is plugged in, no_access where none may be
-  // read, those of the recorder.
-  static Result<std::unique_ptr<RecordingSession>> start(const std::filesystem::path& session, bool overwrite,
+  // Records every device that is there or comes. `warn` gets what the user should know meanwhile, from any
+  // thread. Errors: not_found where nothing is plugged in or named, no_access where none may be read, those
+  // of the recorder.
+  static Result<std::unique_ptr<RecordingSession>> start(const std::filesystem::path& session,
+                                                         RecordingWish wish,
                                                          std::function<void(const std::string&)> warn);
 
   // Ends and closes the session. Errors: those of the disk; what was written before is kept.
   Result<std::vector<RecordedStream>> finish();
 
  private:
-  RecordingSession(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
+  struct Stream {
+    std::string name;
+    StreamMeter meter;
+  };
+  explicit RecordingSession(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
+  void begin(const DeviceDescription& device);
+  void keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples);
 
   std::unique_ptr<Recorder> recorder_;
-  std::vector<std::string> names_;  // written by the watching thread, read after it has ended
-  std::unique_ptr<Tablets> tablets_;
+  std::mutex mutex_;  // of the list, not of its streams: each is its reader's
+  std::vector<std::unique_ptr<Stream>> streams_;
+  std::unique_ptr<Devices> devices_;
 };
 
 }  // namespace fude

@@ -15,9 +15,9 @@
 #include "app/studio/tuft_drawing.h"
 #include "app/studio/view.h"
 #include "app/studio/window.h"
+#include "rig/devices.h"
 #include "rig/live_painting.h"
 #include "rig/session_summary.h"
-#include "rig/tablets.h"
 #include "sim/optics/png_file.h"
 
 namespace fude {
@@ -32,8 +32,8 @@ Timestamp now() {
 // The largest tablet that is there, as a replay will have it; else A5.
 Extent sheet_for_the_hand() {
   Extent sheet;
-  if (const auto found = find_pen_tablets())
-    for (const FoundDevice& tablet : *found)
+  if (const auto found = attached_devices())
+    for (const AttachedDevice& tablet : *found)
       if (const auto area = active_area(tablet.description); area && tablet.access) {
         sheet.width = std::max(sheet.width, area->width);
         sheet.height = std::max(sheet.height, area->height);
@@ -118,7 +118,7 @@ class Studio {
 
   // Their readers hand samples to the painting on their own threads. Without udev there is the mouse.
   void listen_to_tablets(Recorder* recorder) {
-    TabletListener listener;
+    DeviceListener listener;
     listener.appeared = [this, recorder](std::size_t, const DeviceDescription& description) {
       const auto mapping = mapping_for(description, plan_.sheet);
       const std::lock_guard lock(tablets_mutex_);
@@ -127,22 +127,30 @@ class Studio {
       if (!mapping) notice_ = mapping.error().message;
     };
     listener.heard = [this, recorder](std::size_t tablet, const Transfer& transfer,
-                                      const std::optional<PenSample>& pen) {
+                                      std::span<const Sample> samples) {
       const std::lock_guard lock(tablets_mutex_);
       KnownTablet& known = known_tablets_[tablet];
       if (recorder) recorder->add(RecordedTransfer{known.number, transfer});
-      if (!pen) return;
-      known.near = pen->in_proximity;
-      pen_near_ = std::ranges::any_of(known_tablets_, &KnownTablet::near);
-      if (!known.mapping) return;
-      live_.pen({known.number, *pen, *known.mapping});
-      mouse_shown_ = false;
+      for (const Sample& sample : samples)
+        if (const auto* pen = std::get_if<PenSample>(&sample)) hear_pen(known, *pen);
     };
     listener.refused = [this](const Error& error) {
       const std::lock_guard lock(tablets_mutex_);
       notice_ = error.message;
     };
-    if (auto opened = Tablets::open(std::move(listener))) tablets_ = std::move(*opened);
+    const auto wanted = [](const AttachedDevice& device) {
+      return device.description.kind == DeviceKind::pen_tablet;
+    };
+    if (auto opened = Devices::open(std::move(listener), {.wanted = wanted, .named = {}}))
+      tablets_ = std::move(*opened);
+  }
+
+  void hear_pen(KnownTablet& known, const PenSample& pen) {
+    known.near = pen.in_proximity;
+    pen_near_ = std::ranges::any_of(known_tablets_, &KnownTablet::near);
+    if (!known.mapping) return;
+    live_.pen({known.number, pen, *known.mapping});
+    mouse_shown_ = false;
   }
 
   WindowEvents events() {
@@ -302,7 +310,7 @@ class Studio {
   std::mutex tablets_mutex_;
   std::vector<KnownTablet> known_tablets_;
   std::string notice_;  // what a tablet lacks
-  std::unique_ptr<Tablets> tablets_;
+  std::unique_ptr<Devices> tablets_;
   std::unique_ptr<Window> window_;
   std::optional<SheetImage> image_;
   View view_;

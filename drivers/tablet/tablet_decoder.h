@@ -1,6 +1,8 @@
 // The pen of a tablet as every other family's driver.
 #pragma once
 
+#include <algorithm>
+
 #include "drivers/decoder.h"
 #include "drivers/tablet/pen_decoder.h"
 
@@ -13,7 +15,8 @@ class TabletDecoder final : public Decoder {
   void decode(const Transfer& transfer, Decoded& out) override {
     if (const auto sample = pen_.decode(transfer)) out.samples.emplace_back(*sample);
     const DecodeCounts& met = pen_.counts();
-    counts_ = {.reports = met.frames, .samples = met.samples, .lost = met.lost, .malformed = met.malformed};
+    // A stale frame after a drop is counted among the frames and among the lost.
+    counts_ = {.reports = met.frames - std::min(met.lost, met.frames), .samples = met.samples, .lost = met.lost, .malformed = met.malformed};
   }
 
  private:

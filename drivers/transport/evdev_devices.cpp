@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/tablet/identify.h"
+#include "drivers/touch/touch_decoder.h"
 #include "drivers/transport/evdev_source.h"
 #include "drivers/transport/udev_device.h"
 
@@ -63,7 +64,7 @@ std::optional<double> polling_rate(udev_device* device) {
   return std::nullopt;
 }
 
-std::optional<FoundDevice> pen_tablet(udev_device* event) {
+std::optional<FoundDevice> known_device(udev_device* event) {
   const char* node = udev_device_get_devnode(event);
   udev_device* input = udev_device_get_parent_with_subsystem_devtype(event, "input", nullptr);
   if (node == nullptr || input == nullptr) return std::nullopt;
@@ -77,7 +78,7 @@ std::optional<FoundDevice> pen_tablet(udev_device* event) {
   } else {
     return std::nullopt;
   }
-  if (!is_pen_tablet(found.description)) return std::nullopt;
+  if (!is_pen_tablet(found.description) && !is_touch_surface(found.description)) return std::nullopt;
   if (found.description.serial.empty())
     found.description.serial = text(udev_device_get_property_value(event, "ID_SERIAL_SHORT"));
   found.description.id = device_id(found.description);
@@ -90,11 +91,11 @@ bool is_event_node(udev_device* device) {
   return std::string_view(text(udev_device_get_sysname(device))).starts_with("event");
 }
 
-constexpr const char* no_udev = "udev does not answer; tablets can only be found where it runs";
+constexpr const char* no_udev = "udev does not answer; devices can only be found where it runs";
 
 }  // namespace
 
-Result<std::vector<FoundDevice>> find_pen_tablets() {
+Result<std::vector<FoundDevice>> find_input_devices() {
   const std::unique_ptr<udev, decltype(&udev_unref)> context(udev_new(), udev_unref);
   if (!context) return failure(Fault::unsupported, no_udev);
   const std::unique_ptr<udev_enumerate, decltype(&udev_enumerate_unref)> list(
@@ -103,17 +104,17 @@ Result<std::vector<FoundDevice>> find_pen_tablets() {
       udev_enumerate_scan_devices(list.get()) < 0)
     return failure(Fault::unsupported, no_udev);
 
-  std::vector<FoundDevice> tablets;
+  std::vector<FoundDevice> devices;
   udev_list_entry* entry = nullptr;
   udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(list.get())) {
     const UdevDevice device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)),
                             udev_device_unref);
     if (!device || !is_event_node(device.get())) continue;
-    if (auto tablet = pen_tablet(device.get())) tablets.push_back(std::move(*tablet));
+    if (auto known = known_device(device.get())) devices.push_back(std::move(*known));
   }
-  std::sort(tablets.begin(), tablets.end(),
+  std::sort(devices.begin(), devices.end(),
             [](const FoundDevice& a, const FoundDevice& b) { return a.node < b.node; });
-  return tablets;
+  return devices;
 }
 
 Result<std::unique_ptr<PlugMonitor>> PlugMonitor::open() {
@@ -137,8 +138,8 @@ std::optional<PlugEvent> PlugMonitor::next(std::optional<Timestamp> deadline) {
     const std::string action = text(udev_device_get_action(device.get()));
     const char* node = udev_device_get_devnode(device.get());
     if (node == nullptr || (action != "add" && action != "remove")) continue;
-    PlugEvent event{.plugged = action == "add", .node = node, .tablet = std::nullopt};
-    if (event.plugged) event.tablet = pen_tablet(device.get());
+    PlugEvent event{.plugged = action == "add", .node = node, .device = std::nullopt};
+    if (event.plugged) event.device = known_device(device.get());
     return event;
   }
 }

@@ -22,13 +22,14 @@ struct FoundDevice {
   std::optional<double> rate_hz;  // how often USB asks the device; none where it is not on USB
 };
 
-// The pen tablets that are plugged in, ordered by node. Errors: unsupported where udev does not run.
-Result<std::vector<FoundDevice>> find_pen_tablets();
+// The pen tablets and touch surfaces that are plugged in, ordered by node. Errors: unsupported where udev
+// does not run.
+Result<std::vector<FoundDevice>> find_input_devices();
 
 struct PlugEvent {
   bool plugged = false;
   std::filesystem::path node;
-  std::optional<FoundDevice> tablet;  // when a pen tablet was plugged in
+  std::optional<FoundDevice> device;  // when a pen tablet or a touch surface was plugged in
 };
 
 // Follows input devices. Events that happened before open() are not seen: open, then enumerate.

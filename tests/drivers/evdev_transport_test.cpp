@@ -67,7 +67,7 @@ TEST_F(EvdevTransport, TabletsAreFoundAndOthersPassedOver) {
   keyboard.axes.clear();
   MockTablet other(testbed_.get(), keyboard, 3);
   MockTablet tablet(testbed_.get(), pen_tablet(), 5);
-  const auto found = find_pen_tablets();
+  const auto found = find_input_devices();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_EQ(found->size(), 1u);
   EXPECT_EQ(found->at(0).node, tablet.node());
@@ -80,7 +80,7 @@ TEST_F(EvdevTransport, ADeviceThatCallsItselfNothingHasUdevsSerial) {
   DeviceDescription device = pen_tablet();
   device.serial.clear();
   MockTablet tablet(testbed_.get(), device, 5);
-  EXPECT_EQ(find_pen_tablets().value().at(0).description.id, "056a:0304:FROMUDEV");
+  EXPECT_EQ(find_input_devices().value().at(0).description.id, "056a:0304:FROMUDEV");
 }
 
 TEST_F(EvdevTransport, WhatIsHeldAtTheStartIsToldFirst) {
@@ -163,8 +163,8 @@ TEST_F(EvdevTransport, ComingAndGoingIsFollowed) {
   ASSERT_TRUE(came);
   EXPECT_TRUE(came->plugged);
   EXPECT_EQ(came->node, tablet.node());
-  ASSERT_TRUE(came->tablet);
-  EXPECT_EQ(came->tablet->description.id, "056a:0304:4711");
+  ASSERT_TRUE(came->device);
+  EXPECT_EQ(came->device->description.id, "056a:0304:4711");
   tablet.announce_removal();
   auto went = (*monitor)->next(soon());
   if (went && went->plugged) went = (*monitor)->next(soon());  // it was told of twice

@@ -1,5 +1,5 @@
-// Live tablets and recording, over the tablets that umockdev pretends.
-#include "rig/tablets.h"
+// Live devices and recording, over the tablets that umockdev pretends.
+#include "rig/devices.h"
 
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
@@ -47,15 +47,15 @@ struct Heard {
   std::vector<std::pair<std::size_t, PenSample>> samples;
   std::vector<TransferKind> plugs;
 
-  TabletListener listener() {
+  DeviceListener listener() {
     return {[this](std::size_t, const DeviceDescription& device) {
               const std::lock_guard lock(mutex);
               appeared.push_back(device.id);
             },
-            [this](std::size_t tablet, const Transfer& transfer, const std::optional<PenSample>& sample) {
+            [this](std::size_t tablet, const Transfer& transfer, std::span<const Sample> made) {
               const std::lock_guard lock(mutex);
               if (transfer.kind != TransferKind::evdev_frame) plugs.push_back(transfer.kind);
-              if (sample) samples.emplace_back(tablet, *sample);
+              for (const Sample& sample : made) samples.emplace_back(tablet, std::get<PenSample>(sample));
             },
             [](const Error&) {}};
   }
@@ -72,17 +72,17 @@ struct Heard {
   }
 };
 
-class LiveTablets : public testing::Test {
+class LiveDevices : public testing::Test {
  protected:
-  LiveTablets() : testbed_(umockdev_testbed_new(), g_object_unref) {}
+  LiveDevices() : testbed_(umockdev_testbed_new(), g_object_unref) {}
   std::unique_ptr<UMockdevTestbed, decltype(&g_object_unref)> testbed_;
   Heard heard_;
 };
 
-TEST_F(LiveTablets, TwoTabletsAreReadAtOnce) {
+TEST_F(LiveDevices, TwoTabletsAreReadAtOnce) {
   MockTablet one(testbed_.get(), pen("1"), 5);
   MockTablet two(testbed_.get(), pen("2"), 6);
-  const auto tablets = Tablets::open(heard_.listener());
+  const auto tablets = Devices::open(heard_.listener(), {});
   ASSERT_TRUE(tablets) << tablets.error().message;
   EXPECT_EQ(heard_.appeared, (std::vector<std::string>{"056a:0304:1", "056a:0304:2"}));
   draw(one, 100);
@@ -91,9 +91,9 @@ TEST_F(LiveTablets, TwoTabletsAreReadAtOnce) {
   for (const auto& [tablet, sample] : heard_.samples) EXPECT_EQ(sample.x_counts, tablet == 0 ? 100 : 200);
 }
 
-TEST_F(LiveTablets, UnpluggedInMidStrokeAndBackUnderAnotherNodeItIsTheSame) {
+TEST_F(LiveDevices, UnpluggedInMidStrokeAndBackUnderAnotherNodeItIsTheSame) {
   MockTablet tablet(testbed_.get(), pen("1"), 5);
-  const auto tablets = Tablets::open(heard_.listener());
+  const auto tablets = Devices::open(heard_.listener(), {});
   ASSERT_TRUE(tablets);
   draw(tablet, 100);
   ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 1; }));
@@ -112,11 +112,11 @@ TEST_F(LiveTablets, UnpluggedInMidStrokeAndBackUnderAnotherNodeItIsTheSame) {
   EXPECT_EQ(heard_.appeared.size(), 1u);
 }
 
-TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
+TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "recorded.fude";
   std::filesystem::remove(file);
   MockTablet tablet(testbed_.get(), pen("1"), 5);
-  auto recording = RecordingSession::start(file, false, [](const std::string&) {});
+  auto recording = RecordingSession::start(file, {}, [](const std::string&) {});
   ASSERT_TRUE(recording) << recording.error().message;
   for (int i = 1; i <= 50; ++i) {
     draw(tablet, i);
@@ -124,13 +124,16 @@ TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   }
   const EvdevEvent drop[] = {{EV_ABS, ABS_X, 51}, {EV_SYN, SYN_DROPPED, 0}, {EV_SYN, SYN_REPORT, 0}};
   tablet.send(drop);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  draw(tablet, 60);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto streams = (*recording)->finish();
   ASSERT_TRUE(streams) << streams.error().message;
   ASSERT_EQ(streams->size(), 1u);
   EXPECT_EQ(streams->at(0).expected, streams->at(0).received + streams->at(0).dropped);
   EXPECT_EQ(streams->at(0).dropped, 1);
-  EXPECT_EQ(streams->at(0).received, 51);  // fifty drawn and what the kernel was asked after the drop
+  EXPECT_EQ(streams->at(0).figures.gaps, 1);
+  EXPECT_EQ(streams->at(0).received, 52);  // 51 drawn and what the kernel was asked after the drop
 
   const auto session = read_session(file);
   ASSERT_TRUE(session) << session.error().message;
@@ -142,9 +145,9 @@ TEST_F(LiveTablets, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   std::filesystem::remove(file);
 }
 
-TEST_F(LiveTablets, WithoutATabletNoSessionIsMade) {
+TEST_F(LiveDevices, WithoutATabletNoSessionIsMade) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "none.fude";
-  const auto recording = RecordingSession::start(file, false, [](const std::string&) {});
+  const auto recording = RecordingSession::start(file, {}, [](const std::string&) {});
   ASSERT_FALSE(recording);
   EXPECT_EQ(recording.error().fault, Fault::not_found);
   EXPECT_FALSE(std::filesystem::exists(file));

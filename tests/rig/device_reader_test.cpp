@@ -1,4 +1,4 @@
-#include "rig/tablet_reader.h"
+#include "rig/device_reader.h"
 
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/tablet/tablet_decoder.h"
 #include "tests/fakes/replay_source.h"
 
 namespace fude {
@@ -35,13 +36,14 @@ Replay stroke(int frames) {
   return replay;
 }
 
-TEST(TabletReader, HearsEverythingInOrderUntilTheDeviceIsGone) {
-  PenDecoder decoder(pen());
+TEST(DeviceReader, HearsEverythingInOrderUntilTheDeviceIsGone) {
+  TabletDecoder decoder(pen());
   std::vector<double> heard;
   std::atomic<int> transfers{0};
-  TabletReader reader(std::make_unique<ReplaySource>(stroke(5000)), decoder,
-                      [&](const Transfer&, const std::optional<PenSample>& sample) {
-                        if (sample) heard.push_back(sample->x_counts);
+  DeviceReader reader(std::make_unique<ReplaySource>(stroke(5000)), decoder,
+                      [&](const Transfer&, std::span<const Sample> samples) {
+                        for (const Sample& sample : samples)
+                          heard.push_back(std::get<PenSample>(sample).x_counts);
                         ++transfers;
                       });
   while (transfers < 5000) std::this_thread::yield();
@@ -50,13 +52,13 @@ TEST(TabletReader, HearsEverythingInOrderUntilTheDeviceIsGone) {
   for (int i = 0; i < 5000; ++i) EXPECT_EQ(heard[static_cast<std::size_t>(i)], i);
 }
 
-TEST(TabletReader, StopsWhileTheDeviceIsSilent) {
+TEST(DeviceReader, StopsWhileTheDeviceIsSilent) {
   Replay replay = stroke(10);
   replay.stalls = {4};
-  PenDecoder decoder(pen());
+  TabletDecoder decoder(pen());
   std::atomic<int> transfers{0};
-  TabletReader reader(std::make_unique<ReplaySource>(std::move(replay)), decoder,
-                      [&](const Transfer&, const std::optional<PenSample>&) { ++transfers; });
+  DeviceReader reader(std::make_unique<ReplaySource>(std::move(replay)), decoder,
+                      [&](const Transfer&, std::span<const Sample>) { ++transfers; });
   while (transfers < 4) std::this_thread::yield();
   EXPECT_FALSE(reader.stop());
   EXPECT_EQ(transfers, 4);

@@ -1,0 +1,72 @@
+#include "rig/attached_devices.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "drivers/transport/evdev_source.h"
+#include "drivers/transport/hidraw_source.h"
+#include "drivers/transport/serial_source.h"
+#include "drivers/transport/usb_source.h"
+
+namespace fude {
+namespace {
+
+// USB's own serial ports ignore the speed.
+constexpr int baud = 115200;
+
+template <class Source>
+Result<std::unique_ptr<ByteSource>> as_bytes(Result<std::unique_ptr<Source>> source) {
+  if (!source) return tl::unexpected(source.error());
+  return std::unique_ptr<ByteSource>(std::move(*source));
+}
+
+}  // namespace
+
+std::optional<AttachedDevice> attached(const FoundDevice& found) {
+  const FamilyRow* family = find_family(found.description);
+  if (family == nullptr) return std::nullopt;
+  AttachedDevice device{found.node, found.description, family, found.access, found.rate_hz};
+  device.description.kind = family->kind;
+  return device;
+}
+
+std::optional<AttachedDevice> attached(const DeviceNode& node) {
+  const FamilyRow* family = find_family(node.description);
+  if (family == nullptr) return std::nullopt;
+  AttachedDevice device{node.path, node.description, family, node.access, std::nullopt};
+  device.description.kind = family->kind;
+  // Every driver here tells ticks in microseconds, its counter's turns undone.
+  device.description.clock = DeviceClock{.nominal_tick = 1e-6};
+  if (device.description.name.empty()) device.description.name = family->model;
+  return device;
+}
+
+Result<std::vector<AttachedDevice>> attached_devices() {
+  std::vector<AttachedDevice> devices;
+  const auto add = [&devices](const auto& found) {
+    if (auto device = attached(found)) devices.push_back(std::move(*device));
+  };
+  const auto inputs = find_input_devices();
+  if (!inputs) return tl::unexpected(inputs.error());
+  for (const FoundDevice& found : *inputs) add(found);
+  for (const NodeKind kind : {NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video}) {
+    const auto nodes = find_nodes(kind);
+    if (!nodes) return tl::unexpected(nodes.error());
+    for (const DeviceNode& node : *nodes) add(node);
+  }
+  std::ranges::sort(devices, {}, &AttachedDevice::node);
+  return devices;
+}
+
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device) {
+  const std::string_view transport = device.description.transport;
+  if (transport == "evdev") return as_bytes(EvdevSource::open(device.node));
+  if (transport == "hidraw") return as_bytes(HidrawSource::open(device.node));
+  if (transport == "usb") return as_bytes(UsbSource::open(device.node, {0}));
+  if (transport == "serial") return as_bytes(SerialSource::open(device.node, baud));
+  return failure(Fault::unsupported,
+                 device.node.string() + " is reached in a way that this build does not have");
+}
+
+}  // namespace fude

@@ -1,0 +1,36 @@
+// Everything that is plugged in here and that fude has a driver for.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "drivers/families.h"
+#include "drivers/transport/device_nodes.h"
+#include "drivers/transport/evdev_devices.h"
+#include "signal/byte_source.h"
+#include "signal/device.h"
+#include "signal/result.h"
+
+namespace fude {
+
+struct AttachedDevice {
+  std::filesystem::path node;
+  DeviceDescription description;  // with its kind
+  const FamilyRow* family = nullptr;
+  bool access = false;
+  std::optional<double> rate_hz;  // how often USB asks the device, where that is known
+};
+
+// What udev tells, as a device that a driver here reads; none where there is no driver.
+std::optional<AttachedDevice> attached(const FoundDevice& found);
+std::optional<AttachedDevice> attached(const DeviceNode& node);
+
+// Ordered by node. Errors: unsupported where udev does not run.
+Result<std::vector<AttachedDevice>> attached_devices();
+
+// Errors: those of the transport's open().
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device);
+
+}  // namespace fude

@@ -1,0 +1,158 @@
+#include "rig/devices.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "drivers/transport/returning_source.h"
+#include "drivers/transport/waker.h"
+
+namespace fude {
+namespace {
+
+constexpr std::array node_kinds{NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video};
+
+Transfer plug_transfer(TransferKind kind) {
+  return {.time = monotonic_now(), .stamped_by = StampedBy::arrival, .kind = kind};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Devices>> Devices::open(DeviceListener listener, DevicesWish wish) {
+  // The monitors first, so that nothing plugged in meanwhile is missed.
+  auto inputs = PlugMonitor::open();
+  if (!inputs) return tl::unexpected(inputs.error());
+  auto nodes = NodeMonitor::open(node_kinds);
+  if (!nodes) return tl::unexpected(nodes.error());
+  const auto found = attached_devices();
+  if (!found) return tl::unexpected(found.error());
+  std::unique_ptr<Devices> devices(
+      new Devices(std::move(listener), std::move(wish), std::move(*inputs), std::move(*nodes)));
+  for (const AttachedDevice& device : *found) devices->plugged(device);
+  for (const NamedDevice& device : devices->wish_.named) devices->add(device);
+  devices->watching_inputs_ = std::thread([raw = devices.get()] { raw->watch_inputs(); });
+  devices->watching_nodes_ = std::thread([raw = devices.get()] { raw->watch_nodes(); });
+  return devices;
+}
+
+Devices::Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<PlugMonitor> inputs,
+                 std::unique_ptr<NodeMonitor> nodes)
+    : listener_(std::move(listener)),
+      wish_(std::move(wish)),
+      inputs_(std::move(inputs)),
+      nodes_(std::move(nodes)) {}
+
+Devices::~Devices() { stop(); }
+
+void Devices::stop() {
+  stopping_ = true;
+  inputs_->wake();
+  nodes_->wake();
+  if (watching_inputs_.joinable()) watching_inputs_.join();
+  if (watching_nodes_.joinable()) watching_nodes_.join();
+  for (Slot& slot : slots_) slot.reader.reset();
+}
+
+std::vector<ReportCounts> Devices::counts() const {
+  std::vector<ReportCounts> counts;
+  for (const Slot& slot : slots_) counts.push_back(slot.decoder->counts());
+  return counts;
+}
+
+void Devices::watch_inputs() {
+  while (!stopping_) {
+    const auto event = inputs_->next(std::nullopt);
+    if (!event) continue;
+    if (!event->plugged) {
+      unplugged(event->node);
+    } else if (event->device) {
+      if (const auto device = attached(*event->device)) plugged(*device);
+    }
+  }
+}
+
+void Devices::watch_nodes() {
+  while (!stopping_) {
+    const auto event = nodes_->next(std::nullopt);
+    if (!event) continue;
+    if (!event->plugged) {
+      unplugged(event->node.path);
+    } else if (const auto device = attached(event->node)) {
+      plugged(*device);
+    }
+  }
+}
+
+void Devices::plugged(const AttachedDevice& found) {
+  if (wish_.wanted && !wish_.wanted(found)) return;
+  const std::lock_guard lock(mutex_);
+  const auto open_here = [&](const Slot& slot) { return slot.node == found.node; };
+  if (std::any_of(slots_.begin(), slots_.end(), open_here)) return;  // told twice
+  auto source = open_source(found);
+  if (!source) {
+    listener_.refused(source.error());
+    return;
+  }
+  auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) {
+    return s.node.empty() && s.description.id == found.description.id &&
+           s.description.kind == found.description.kind;
+  });
+  const bool back = slot != slots_.end();
+  if (!back) {
+    slots_.push_back({found.description, {}, open_decoder(*found.family, found.description), nullptr});
+    slot = slots_.end() - 1;
+  }
+  slot->node = found.node;
+  const auto number = static_cast<std::size_t>(slot - slots_.begin());
+  if (back) {
+    const Transfer again = plug_transfer(TransferKind::plugged);
+    Decoded decoded;
+    slot->decoder->decode(again, decoded);
+    listener_.heard(number, again, decoded.samples);
+  } else {
+    listener_.appeared(number, slot->description);
+  }
+  read(number, std::move(*source));
+}
+
+void Devices::add(const NamedDevice& named) {
+  const std::lock_guard lock(mutex_);
+  slots_.push_back({named.description, {}, open_decoder(*named.family, named.description), nullptr});
+  const std::size_t number = slots_.size() - 1;
+  listener_.appeared(number, named.description);
+  // Tried again and again, told once an absence.
+  read(number, std::make_unique<ReturningSource>([this, open = named.open, told = false]() mutable {
+         auto source = open();
+         if (!source && !told) listener_.refused(source.error());
+         told = !source;
+         return source;
+       }));
+}
+
+void Devices::read(std::size_t number, std::unique_ptr<ByteSource> source) {
+  Slot& slot = slots_[number];
+  slot.reader = std::make_unique<DeviceReader>(
+      std::move(source), *slot.decoder,
+      [this, number](const Transfer& transfer, std::span<const Sample> samples) {
+        listener_.heard(number, transfer, samples);
+      });
+}
+
+void Devices::unplugged(const std::filesystem::path& node) {
+  const std::lock_guard lock(mutex_);
+  for (std::size_t number = 0; number < slots_.size(); ++number) {
+    Slot& slot = slots_[number];
+    if (slot.node != node) continue;
+    // Some kernels tell udev before they end the reading.
+    if (slot.reader && !slot.reader->stop()) {
+      const Transfer gone = plug_transfer(TransferKind::unplugged);
+      Decoded decoded;
+      slot.decoder->decode(gone, decoded);
+      listener_.heard(number, gone, decoded.samples);
+    }
+    slot.reader.reset();
+    slot.node.clear();
+  }
+}
+
+}  // namespace fude

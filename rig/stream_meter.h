@@ -1,0 +1,47 @@
+// How well a stream comes: how many, how evenly, what was lost, and how its clock lies on the host's.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "signal/clock_fit.h"
+#include "signal/device.h"
+#include "signal/sample.h"
+
+namespace fude {
+
+struct StreamFigures {
+  std::int64_t received = 0;
+  std::int64_t gaps = 0;  // samples after a loss or an absence
+  double rate_hz = 0;     // of reports: one over the median interval between host times; 0 below two
+  struct Jitter {         // of the intervals about their median, microseconds
+    double p50 = 0;
+    double p99 = 0;
+    double largest = 0;
+  } jitter_us;
+  std::vector<ClockLine> clock;  // none where the device states no ticks
+};
+
+// One stream of one device, in bounded memory: the quantiles are those of the last 65 536 intervals. Samples
+// of one report share its host time and count as one for rate and jitter; intervals across a gap do not
+// count.
+class StreamMeter {
+ public:
+  explicit StreamMeter(std::optional<DeviceClock> clock);
+
+  void add(const SampleTime& time, bool after_gap);
+
+  StreamFigures figures() const;
+
+ private:
+  std::optional<ClockFitter> fitter_;
+  std::int64_t received_ = 0;
+  std::int64_t gaps_ = 0;
+  std::optional<Timestamp> last_;
+  std::vector<std::int64_t> intervals_ns_;  // a ring
+  std::size_t next_interval_ = 0;
+};
+
+}  // namespace fude
