@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/painting_options.h"
 #include "rig/bench_pipeline.h"
+#include "rig/bench_record.h"
 #include "sim/brush/bench_brush.h"
 #include "sim/ink/bench_ink.h"
 
@@ -134,6 +135,39 @@ void add_pipeline(CLI::App& bench, int& status) {
   });
 }
 
+void add_record_bench(CLI::App& bench, int& status) {
+  struct Options {
+    std::string out = "bench-record.fude";
+    double seconds = 10;
+    std::size_t picture_bytes = 150000;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      bench.add_subcommand("record", "a whole rig at once: 4 tablets, 4 handles, 2 trackers, a camera");
+  command->add_option("--out", options->out, "the session, replaced and removed again")
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "how long")->check(CLI::Range(0.1, 3600.0));
+  command->add_option("--picture-bytes", options->picture_bytes, "of a camera's picture")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options, &status] {
+    const auto b = bench_record(options->out, options->seconds, options->picture_bytes);
+    if (!b) {
+      status = report(b.error());
+      return;
+    }
+    print(Json{{"offered", b->offered},
+               {"kept", b->kept},
+               {"cores", b->cores},
+               {"peak_mb", b->peak_mb},
+               {"session_mb", b->session_mb},
+               {"byte_to_sample_us", {{"p50", b->delay_us_p50}, {"p99", b->delay_us_p99}}}},
+          options->json);
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
@@ -142,6 +176,7 @@ void add_bench(CLI::App& app, int& status) {
   add_ink(*bench, status);
   add_brush(*bench, status);
   add_pipeline(*bench, status);
+  add_record_bench(*bench, status);
 }
 
 }  // namespace fude

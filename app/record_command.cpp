@@ -46,6 +46,10 @@ Json as_json(const std::vector<RecordedStream>& streams) {
                       {{"p50", s.figures.jitter_us.p50},
                        {"p99", s.figures.jitter_us.p99},
                        {"max", s.figures.jitter_us.largest}}},
+                     {"delay_us",
+                      {{"p50", s.figures.delay_us.p50},
+                       {"p99", s.figures.delay_us.p99},
+                       {"max", s.figures.delay_us.largest}}},
                      {"clock_fit", clock_fit(s.figures.clock)}};
   return {{"streams", all}};
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/camera/camera_decoder.h"
 #include "drivers/falcon/falcon_decoder.h"
 #include "drivers/handle/handle_decoder.h"
 #include "drivers/joycon/joycon_decoder.h"
@@ -60,10 +61,12 @@ constexpr FamilyRow rows[] = {
     {Family::polhemus, "liberty", DeviceKind::tracker, "serial", 0, 0xff12, {}, "LIBERTY"},
 #define FALCON_MODEL(product, name, force_n, motor_counts_per_nm, motor_limit_counts, middle_m) \
   {Family::falcon, "falcon", DeviceKind::haptic, "usb", ftdi_vendor, product, {}, name},
+#include "drivers/camera/camera_decoder.h"
 #include "drivers/falcon/models.inl"
 #undef FALCON_MODEL
     {Family::openigtlink, "openigtlink", DeviceKind::tracker, "network", 0, 0, {}, "OpenIGTLink"},
     {Family::vrpn, "vrpn", DeviceKind::tracker, "network", 0, 0, {}, "VRPN"},
+    {Family::camera, "camera", DeviceKind::camera, "v4l2", 0, 0, {}, "camera"},
 };
 
 template <class Fits>
@@ -81,6 +84,7 @@ const FamilyRow* find_family(const DeviceDescription& device, std::optional<HidU
     if (is_pen_tablet(device)) return find_family("tablet", "evdev");
     return is_touch_surface(device) ? find_family("touch", "evdev") : nullptr;
   }
+  if (device.transport == "v4l2") return find_family("camera", "v4l2");
   return first([&](const FamilyRow& row) {
     return row.vendor != 0 && device.transport == row.transport && device.vendor == row.vendor &&
            device.product == row.product && (!usage || !row.usage || *usage == *row.usage);
@@ -114,6 +118,8 @@ std::unique_ptr<Decoder> open_decoder(const FamilyRow& row, const DeviceDescript
       return std::make_unique<OpenIgtLinkDecoder>();
     case Family::vrpn:
       return std::make_unique<VrpnDecoder>();
+    case Family::camera:
+      return std::make_unique<CameraDecoder>();
     case Family::falcon:
       return std::make_unique<FalconDecoder>(std::move(firmware));
   }

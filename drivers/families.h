@@ -25,6 +25,7 @@ enum class Family : std::uint8_t {
   ultrasonic,
   openigtlink,
   vrpn,
+  camera,
   falcon,
 };
 

@@ -4,10 +4,12 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/camera/camera_decoder.h"
 #include "drivers/transport/evdev_source.h"
 #include "drivers/transport/hidraw_source.h"
 #include "drivers/transport/serial_source.h"
 #include "drivers/transport/usb_source.h"
+#include "drivers/transport/v4l2_source.h"
 
 namespace fude {
 namespace {
@@ -59,9 +61,14 @@ Result<std::vector<AttachedDevice>> attached_devices() {
   return devices;
 }
 
-Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device) {
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder) {
   const std::string_view transport = device.description.transport;
   if (transport == "evdev") return as_bytes(EvdevSource::open(device.node));
+  if (transport == "v4l2") {
+    auto source = V4l2Source::open(device.node, {});
+    if (source) dynamic_cast<CameraDecoder&>(decoder).watch(source->get());
+    return as_bytes(std::move(source));
+  }
   if (transport == "hidraw") return as_bytes(HidrawSource::open(device.node));
   if (transport == "usb") return as_bytes(UsbSource::open(device.node, {0}));
   if (transport == "serial") return as_bytes(SerialSource::open(device.node, baud));

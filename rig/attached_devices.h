@@ -30,7 +30,8 @@ std::optional<AttachedDevice> attached(const DeviceNode& node);
 // Ordered by node. Errors: unsupported where udev does not run.
 Result<std::vector<AttachedDevice>> attached_devices();
 
-// Errors: those of the transport's open().
-Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device);
+// `decoder`: the device's own; a camera's is told which source it watches. Errors: those of the transport's
+// open().
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder);
 
 }  // namespace fude

@@ -88,18 +88,21 @@ void Devices::plugged(const AttachedDevice& found) {
   const std::lock_guard lock(mutex_);
   const auto open_here = [&](const Slot& slot) { return slot.node == found.node; };
   if (std::any_of(slots_.begin(), slots_.end(), open_here)) return;  // told twice
-  auto source = open_source(found);
-  if (!source) {
-    listener_.refused(source.error());
-    return;
-  }
   auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) {
     return s.node.empty() && s.description.id == found.description.id &&
            s.description.kind == found.description.kind;
   });
   const bool back = slot != slots_.end();
+  auto decoder = back ? std::move(slot->decoder) : open_decoder(*found.family, found.description);
+  auto source = open_source(found, *decoder);
+  if (back) slot->decoder = std::move(decoder);
+  if (!source) {
+    // The second node of a camera takes no pictures.
+    if (source.error().fault != Fault::unsupported) listener_.refused(source.error());
+    return;
+  }
   if (!back) {
-    slots_.push_back({found.description, {}, open_decoder(*found.family, found.description), nullptr});
+    slots_.push_back({found.description, {}, std::move(decoder), nullptr});
     slot = slots_.end() - 1;
   }
   slot->node = found.node;

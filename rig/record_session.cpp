@@ -5,6 +5,7 @@
 
 #include "capture/sample_columns.h"
 #include "drivers/transport/device_node.h"
+#include "drivers/transport/waker.h"
 
 namespace fude {
 namespace {
@@ -67,6 +68,7 @@ void RecordingSession::keep(std::size_t device, const Transfer& transfer, std::s
     const std::lock_guard lock(mutex_);
     stream = streams_[device].get();
   }
+  if (!samples.empty()) stream->meter.decoded_after(monotonic_now() - transfer.time);
   for (const Sample& sample : samples) {
     stream->meter.add(time_of(sample), after_gap(sample));
     if (const auto* pen = std::get_if<PenSample>(&sample))

@@ -16,15 +16,18 @@ struct StreamFigures {
   std::int64_t received = 0;
   std::int64_t gaps = 0;  // samples after a loss or an absence
   double rate_hz = 0;     // of reports: one over the median interval between host times; 0 below two
-  struct Jitter {         // of the intervals about their median, microseconds
+  struct Spread {         // microseconds
     double p50 = 0;
     double p99 = 0;
     double largest = 0;
-  } jitter_us;
+  };
+  Spread jitter_us;              // of the intervals about their median
+  Spread delay_us;               // from the transfer's stamp to the sample
   std::vector<ClockLine> clock;  // none where the device states no ticks
 };
 
-// One stream of one device, in bounded memory: the quantiles are those of the last 65 536 intervals. Samples
+// One stream of one device, in bounded memory: the quantiles are those of the last 65 536 intervals
+// and delays. Samples
 // of one report share its host time and count as one for rate and jitter; intervals across a gap do not
 // count.
 class StreamMeter {
@@ -32,6 +35,8 @@ class StreamMeter {
   explicit StreamMeter(std::optional<DeviceClock> clock);
 
   void add(const SampleTime& time, bool after_gap);
+  // How long after its stamp a transfer had become samples.
+  void decoded_after(Duration delay);
 
   StreamFigures figures() const;
 
@@ -40,8 +45,11 @@ class StreamMeter {
   std::int64_t received_ = 0;
   std::int64_t gaps_ = 0;
   std::optional<Timestamp> last_;
-  std::vector<std::int64_t> intervals_ns_;  // a ring
+  // Each a ring.
+  std::vector<std::int64_t> intervals_ns_;
   std::size_t next_interval_ = 0;
+  std::vector<std::int64_t> delays_ns_;
+  std::size_t next_delay_ = 0;
 };
 
 }  // namespace fude
