@@ -18,6 +18,7 @@ void add_devices(CLI::App& fude, int& status);
 void add_export(CLI::App& fude, int& status);
 void add_import(CLI::App& fude, int& status);
 void add_info(CLI::App& fude, int& status);
+void add_monitor(CLI::App& fude, int& status);
 void add_paint(CLI::App& fude, int& status);
 void add_perform(CLI::App& fude, int& status);
 void add_record(CLI::App& fude, int& status);

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   fude::add_record(app, status);
   fude::add_bench(app, status);
 #ifdef FUDE_WINDOW
+  fude::add_monitor(app, status);
   fude::add_paint(app, status);
 #endif
   try {

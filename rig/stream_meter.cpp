@@ -54,7 +54,12 @@ StreamFigures StreamMeter::figures() const {
   std::vector<std::int64_t> values = intervals_ns_;
   const std::int64_t median = quantile(values, 0.5);
   if (median > 0) figures.rate_hz = 1e9 / static_cast<double>(median);
-  for (std::int64_t& value : values) value = std::abs(value - median);
+  for (std::int64_t& value : values) {
+    value = std::abs(value - median);
+    const auto bin = std::ranges::upper_bound(
+        jitter_bins_us, static_cast<int>(std::min<std::int64_t>(value / 1000, 1'000'000)));
+    ++figures.jitter_histogram[static_cast<std::size_t>(bin - jitter_bins_us.begin())];
+  }
   figures.jitter_us = quantiles_us(std::move(values));
   return figures;
 }

@@ -1,6 +1,7 @@
 // How well a stream comes: how many, how evenly, what was lost, and how its clock lies on the host's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 
 namespace fude {
 
+// The last bin of a histogram is for what is longer than all of these.
+inline constexpr std::array jitter_bins_us{50, 100, 200, 500, 1000, 2000, 5000};
+
 struct StreamFigures {
   std::int64_t received = 0;
   std::int64_t gaps = 0;  // samples after a loss or an absence
@@ -21,7 +25,8 @@ struct StreamFigures {
     double p99 = 0;
     double largest = 0;
   };
-  Spread jitter_us;              // of the intervals about their median
+  Spread jitter_us;  // of the intervals about their median
+  std::array<std::int64_t, jitter_bins_us.size() + 1> jitter_histogram{};
   Spread delay_us;               // from the transfer's stamp to the sample
   std::vector<ClockLine> clock;  // none where the device states no ticks
 };

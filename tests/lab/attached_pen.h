@@ -17,7 +17,7 @@ inline FoundDevice attached_pen(const std::function<void()>& plug) {
   plug();
   const Timestamp deadline = monotonic_now() + std::chrono::seconds(10);
   while (auto event = (*monitor)->next(deadline))
-    if (event->tablet) return *event->tablet;
+    if (event->device) return *event->device;
   throw std::runtime_error("no pen tablet appeared");
 }
 
