@@ -15,6 +15,7 @@
 #include "tests/lab/byte_literals.h"
 #include "tests/lab/dialogue.h"
 #include "tests/lab/gadget_port.h"
+#include "tests/lab/patience.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/scripted_device.h"
 
@@ -52,7 +53,7 @@ TEST(FamilyOnTheWire, BrushHandle) {
         });
   });
   auto source = returning(NodeKind::hidraw, id, [](const auto& path) { return HidrawSource::open(path); });
-  ASSERT_TRUE(source.read(monotonic_now() + std::chrono::seconds(10)));
+  ASSERT_TRUE(source.read(patience()));
   Dialogue dialogue(source, node.description);
   ASSERT_TRUE(dialogue.hear_one());  // the scale
   std::vector<unsigned> told;

@@ -7,6 +7,7 @@
 
 #include "capture/session.h"
 #include "drivers/transport/waker.h"
+#include "tests/lab/patience.h"
 
 namespace fude::lab {
 namespace {
@@ -47,7 +48,7 @@ std::size_t SessionRecording::drain(ByteSource& source) {
 }
 
 std::size_t SessionRecording::drain_until(ByteSource& source, std::size_t count) {
-  const Timestamp deadline = monotonic_now() + std::chrono::seconds(10);
+  const Timestamp deadline = patience();
   while (size_ < count && take(source, deadline)) {
   }
   return size_;

@@ -20,7 +20,7 @@ class SessionRecording {
   // Records what `source` has now; returns how many transfers were recorded in all. Stops at the fault
   // that reading ended in, which `error()` then holds.
   std::size_t drain(ByteSource& source);
-  // The same until there are `count` in all or ten seconds have passed.
+  // The same until there are `count` in all or `patience()` is at its end.
   std::size_t drain_until(ByteSource& source, std::size_t count);
   // One more; false when none came.
   bool drain_one(ByteSource& source);

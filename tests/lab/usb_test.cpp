@@ -14,6 +14,7 @@
 #include "drivers/transport/usb_source.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/byte_literals.h"
+#include "tests/lab/patience.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/replugs.h"
 #include "tests/lab/scripted_device.h"
@@ -115,7 +116,7 @@ TEST(Usb, WhatTheDeviceRefusesOrLeavesUnansweredIsSaid) {
   const auto refused = usb.source->write(to_device(TransferKind::usb_control, setup));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().fault, Fault::unsupported);
-  const auto answer = usb.source->read(monotonic_now() + std::chrono::seconds(10));
+  const auto answer = usb.source->read(patience());
   ASSERT_TRUE(answer && *answer);
   EXPECT_EQ((*answer)->payload, setup);  // and nothing after it
   hang = true;
@@ -215,14 +216,14 @@ TEST(Usb, AnInterfaceIsTakenFromTheKernelAndGivenBack) {
     auto source = UsbSource::open(path, {0});
     ASSERT_TRUE(source) << source.error().message;
     ASSERT_TRUE(handle->send(in, numbered(5, 24)));
-    const auto transfer = (*source)->read(monotonic_now() + std::chrono::seconds(10));
+    const auto transfer = (*source)->read(patience());
     ASSERT_TRUE(transfer && *transfer);
     EXPECT_EQ((*transfer)->payload, numbered(5, 24));
   });
   auto source = HidrawSource::open(back.path);
   ASSERT_TRUE(source) << source.error().message;
   ASSERT_TRUE(handle->send(in, numbered(6, 24)));
-  const auto transfer = (*source)->read(monotonic_now() + std::chrono::seconds(10));
+  const auto transfer = (*source)->read(patience());
   ASSERT_TRUE(transfer && *transfer);
   EXPECT_EQ((*transfer)->payload.size(), 25u);
 }
