@@ -8,6 +8,7 @@
 #include "drivers/transport/evdev_source.h"
 #include "drivers/transport/hidraw_source.h"
 #include "drivers/transport/serial_source.h"
+#include "drivers/transport/usb_hid_source.h"
 #include "drivers/transport/usb_source.h"
 #include "drivers/transport/v4l2_source.h"
 
@@ -70,6 +71,9 @@ Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, De
     return as_bytes(std::move(source));
   }
   if (transport == "hidraw") return as_bytes(HidrawSource::open(device.node));
+  // The kernel's HID driver leaves the glove alone.
+  if (transport == "usb" && device.family->family == Family::p5glove)
+    return as_bytes(UsbHidSource::open(device.node, 0, true));
   if (transport == "usb") return as_bytes(UsbSource::open(device.node, {0}));
   if (transport == "serial") return as_bytes(SerialSource::open(device.node, baud));
   return failure(Fault::unsupported,

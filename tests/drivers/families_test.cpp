@@ -49,7 +49,7 @@ TEST(Families, NoTwoRowsClaimOneDevice) {
 }
 
 TEST(Families, RowsAreWhole) {
-  const std::set<std::string> transports{"evdev", "hidraw", "usb", "serial", "network"};
+  const std::set<std::string> transports{"evdev", "hidraw", "usb", "serial", "network", "v4l2"};
   std::map<std::string, Family> families;
   for (const FamilyRow& row : family_rows()) {
     EXPECT_TRUE(transports.contains(row.transport)) << row.model;
