@@ -1,7 +1,7 @@
 #include "rig/snapshot_memory.h"
 
-#include <pthread.h>
-#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <new>
 #include <utility>
@@ -9,6 +9,11 @@
 #include "sim/ink/tile_layout.h"
 
 namespace fude {
+namespace {
+
+constexpr int politeness = 10;
+
+}  // namespace
 
 SnapshotMemory::SnapshotMemory() : thread_([this] { serve(); }) {}
 
@@ -35,8 +40,8 @@ void SnapshotMemory::prepare(std::size_t cells) {
 }
 
 void SnapshotMemory::serve() {
-  const sched_param priority{};
-  pthread_setschedparam(pthread_self(), SCHED_IDLE, &priority);
+  // On Linux a thread of its own; not the idle class, which a busy machine would never let end.
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), politeness);
   std::unique_lock lock(mutex_);
   for (;;) {
     wished_.wait(lock, [this] { return stopping_ || ready_.tiles.size() < wish_; });

@@ -21,7 +21,7 @@ class SnapshotMemory {
   // What has been prepared, as a snapshot to be written over; an empty one where that is nothing yet.
   InkSnapshot take();
 
-  // Prepares memory for so many cells behind the caller, when the processor has nothing better to do.
+  // Prepares memory for so many cells behind the caller, giving way to what paints.
   void prepare(std::size_t cells);
 
  private:

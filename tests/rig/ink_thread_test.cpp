@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "rig/snapshot_memory.h"
 #include "sim/ink/tile_layout.h"
@@ -87,7 +89,10 @@ TEST(SnapshotMemory, ChangesNothingButWhereASnapshotLies) {
   EXPECT_TRUE(memory.take().tiles.empty());
   memory.prepare(3 * tile::cells);
   InkSnapshot used;
-  while (used.tiles.empty()) used = memory.take();
+  while (used.tiles.empty()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    used = memory.take();
+  }
   used.tiles[0].planes.assign(used.tiles[0].planes.size(), 9.0F);
   used.steps = 99;
   const InkSnapshot again = ink->snapshot(std::move(used));
