@@ -21,6 +21,7 @@ void add_info(CLI::App& fude, int& status);
 void add_monitor(CLI::App& fude, int& status);
 void add_paint(CLI::App& fude, int& status);
 void add_perform(CLI::App& fude, int& status);
+void add_play(CLI::App& fude, int& status);
 void add_record(CLI::App& fude, int& status);
 void add_replay(CLI::App& fude, int& status);
 

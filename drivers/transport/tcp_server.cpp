@@ -3,12 +3,17 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <utility>
+
+#include "drivers/transport/waker.h"
 
 namespace fude {
 
@@ -63,6 +68,27 @@ void TcpServer::attend() {
 void TcpServer::send(Bytes message) {
   attend();
   for (auto client = clients_.begin(); client != clients_.end();) drop(client, deliver(*client, message));
+}
+
+std::size_t TcpServer::waiting_bytes() const {
+  std::size_t most = 0;
+  for (const Client& client : clients_) most = std::max(most, client.waiting.size());
+  return most;
+}
+
+void TcpServer::drain(Timestamp deadline) {
+  for (attend(); waiting_bytes() > 0; attend()) {
+    const Duration left = deadline - monotonic_now();
+    if (left <= Duration(0)) break;
+    std::vector<pollfd> behind;
+    for (const Client& client : clients_)
+      if (!client.waiting.empty()) behind.push_back({client.socket.get(), POLLOUT, 0});
+    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
+    const timespec time{static_cast<time_t>(whole.count()), static_cast<long>((left - whole).count())};
+    ppoll(behind.data(), behind.size(), &time, nullptr);
+  }
+  for (auto client = clients_.begin(); client != clients_.end();)
+    drop(client, client->waiting.empty() ? Standing::fine : Standing::slow);
 }
 
 TcpServer::Standing TcpServer::deliver(Client& client, Bytes message) {

@@ -10,10 +10,11 @@
 #include "drivers/byte_order.h"
 #include "drivers/transport/file_descriptor.h"
 #include "signal/result.h"
+#include "signal/timestamp.h"
 
 namespace fude {
 
-// One thread calls it; nothing in it waits. What clients send is read and thrown away.
+// One thread calls it; nothing in it waits but drain(). What clients send is read and thrown away.
 class TcpServer {
  public:
   struct Options {
@@ -43,6 +44,13 @@ class TcpServer {
 
   // To every client, after attend().
   void send(Bytes message);
+
+  // What the client that is farthest behind has not taken yet, beyond what the system holds for it.
+  std::size_t waiting_bytes() const;
+
+  // Waits until every client has taken what was sent, or the deadline on CLOCK_MONOTONIC has passed: who has
+  // not by then is dropped as slow.
+  void drain(Timestamp deadline);
 
  private:
   struct Client {

@@ -122,6 +122,27 @@ TEST(Tcp, APeerThatNeverReadsIsDroppedAndTheOthersGoOn) {
   EXPECT_EQ(next(*other).kind, TransferKind::message);
 }
 
+TEST(Tcp, DrainingWaitsForThoseWhoReadAndDropsThoseWhoDoNot) {
+  auto host = server({.most_waiting_bytes = std::size_t{1} << 30});
+  auto reads = client(*host);
+  while (host->clients() < 1) host->attend();
+  const auto message = openigtlink::write_transform("Brush", 1, pose(0));
+  constexpr int sent = 200'000;  // far more than a socket holds
+  for (int i = 0; i < sent; ++i) host->send(message);
+  EXPECT_GT(host->waiting_bytes(), 0u);
+  std::thread reader([&] {
+    for (int i = 0; i < sent; ++i) ASSERT_EQ(next(*reads).payload, message);
+  });
+  host->drain(monotonic_now() + patience);
+  EXPECT_EQ(host->waiting_bytes(), 0u);
+  EXPECT_EQ(host->clients(), 1u);
+  reader.join();
+  for (int i = 0; i < sent; ++i) host->send(message);
+  host->drain(monotonic_now());
+  EXPECT_EQ(host->clients(), 0u);
+  EXPECT_EQ(host->counts().slow, 1u);
+}
+
 TEST(Tcp, WhoeverLeavesIsNotedAndTooManyAreRefused) {
   auto host = server({.most_clients = 1});
   auto first = client(*host);
