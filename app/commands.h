@@ -15,6 +15,7 @@ namespace fude {
 void add_bench(CLI::App& fude, int& status);
 void add_demo(CLI::App& fude, int& status);
 void add_devices(CLI::App& fude, int& status);
+void add_doctor(CLI::App& fude, int& status);
 void add_export(CLI::App& fude, int& status);
 void add_import(CLI::App& fude, int& status);
 void add_info(CLI::App& fude, int& status);

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   fude::add_perform(app, status);
   fude::add_info(app, status);
   fude::add_devices(app, status);
+  fude::add_doctor(app, status);
   fude::add_record(app, status);
   fude::add_play(app, status);
   fude::add_bench(app, status);

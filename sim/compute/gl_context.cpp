@@ -106,6 +106,7 @@ Result<GlContext> GlContext::on_display(void* display) {
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, raw))
     return failure(Fault::unsupported, "the driver's context cannot be used");
   if (epoxy_gl_version() < least_version) return failure(Fault::unsupported, "the driver's OpenGL is older");
+  context.version_ = reinterpret_cast<const char*>(glGetString(GL_VERSION));
   context.renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return context;
 }
@@ -113,11 +114,13 @@ Result<GlContext> GlContext::on_display(void* display) {
 GlContext::GlContext(GlContext&& other) noexcept
     : display_(other.display_),
       context_(std::exchange(other.context_, EGL_NO_CONTEXT)),
+      version_(std::move(other.version_)),
       renderer_(std::move(other.renderer_)) {}
 
 GlContext& GlContext::operator=(GlContext&& other) noexcept {
   std::swap(display_, other.display_);
   std::swap(context_, other.context_);
+  std::swap(version_, other.version_);
   std::swap(renderer_, other.renderer_);
   return *this;
 }

@@ -45,7 +45,8 @@ class GlContext {
     void* context_;
   };
 
-  // GL_RENDERER, as the driver words it.
+  // GL_VERSION and GL_RENDERER, as the driver words them.
+  const std::string& version() const { return version_; }
   const std::string& renderer() const { return renderer_; }
 
  private:
@@ -56,6 +57,7 @@ class GlContext {
 
   void* display_;  // EGLDisplay; EGL keeps it for the life of the program
   void* context_;  // EGLContext; null after a move
+  std::string version_;
   std::string renderer_;
 };
 
