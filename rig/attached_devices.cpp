@@ -24,6 +24,19 @@ Result<std::unique_ptr<ByteSource>> as_bytes(Result<std::unique_ptr<Source>> sou
   return std::unique_ptr<ByteSource>(std::move(*source));
 }
 
+// In the first format that the camera has.
+Result<std::unique_ptr<ByteSource>> open_camera(const std::filesystem::path& node, CameraDecoder& decoder) {
+  Result<std::unique_ptr<V4l2Source>> source = nullptr;
+  for (const PixelFormat format : {PixelFormat::mjpeg, PixelFormat::yuyv, PixelFormat::grey}) {
+    CameraSettings settings;
+    settings.format = format;
+    source = V4l2Source::open(node, settings);
+    if (source || source.error().fault != Fault::unsupported) break;
+  }
+  if (source) decoder.watch(source->get());
+  return as_bytes(std::move(source));
+}
+
 }  // namespace
 
 std::optional<AttachedDevice> attached(const FoundDevice& found) {
@@ -65,11 +78,7 @@ Result<std::vector<AttachedDevice>> attached_devices() {
 Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder) {
   const std::string_view transport = device.description.transport;
   if (transport == "evdev") return as_bytes(EvdevSource::open(device.node));
-  if (transport == "v4l2") {
-    auto source = V4l2Source::open(device.node, {});
-    if (source) dynamic_cast<CameraDecoder&>(decoder).watch(source->get());
-    return as_bytes(std::move(source));
-  }
+  if (transport == "v4l2") return open_camera(device.node, dynamic_cast<CameraDecoder&>(decoder));
   if (transport == "hidraw") return as_bytes(HidrawSource::open(device.node));
   // The kernel's HID driver leaves the glove alone.
   if (transport == "usb" && device.family->family == Family::p5glove)
