@@ -3,16 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <string>
 
 namespace fude {
 
-inline std::filesystem::path recordings() {
-  const char* given = std::getenv("FUDE_RECORDINGS");
-  return given != nullptr && *given != '\0' ? given : FUDE_DEFAULT_RECORDINGS;
-}
+std::filesystem::path recordings();
 
 }  // namespace fude
 

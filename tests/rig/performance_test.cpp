@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "rig/performed_path.h"
 #include "rig/replay.h"
 #include "rig/share_folder.h"
+#include "tests/fakes/recordings.h"
 #include "tests/rig/glyph_outline.h"
 
 namespace fude {
@@ -108,11 +108,8 @@ TEST(Performance, WhatIsDecodedIsWhatWasWritten) {
 
 // Written at 60 mm to the em, the character covers its printed outline.
 TEST(Yong, OverlapsItsOutline) {
-  const char* set = std::getenv("FUDE_RECORDINGS");
-  const std::filesystem::path glyph =
-      std::filesystem::path(set && *set ? set : FUDE_DEFAULT_RECORDINGS) / "glyphs/U+6C38.json";
-  if (!std::filesystem::exists(glyph)) GTEST_SKIP() << "skipped: no recordings at " << glyph;
-  const auto json = nlohmann::json::parse(text_of(glyph));
+  REQUIRE_RECORDING("glyphs/U+6C38.json");
+  const auto json = nlohmann::json::parse(text_of(recordings() / "glyphs/U+6C38.json"));
 
   Performance script = yong();
   script.strokes.resize(5);  // the character without the wash
