@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -18,8 +17,6 @@
 
 namespace fude {
 namespace {
-
-constexpr NodeKind node_kinds[] = {NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video};
 
 const char* kind_words(DeviceKind kind) {
   switch (kind) {
@@ -104,13 +101,12 @@ void print(const AttachedDevice& found) {
   if (!found.access) std::printf("  %s\n", access_advice(found.node).c_str());
 }
 
-// Tells of devices that come, and of the nodes of devices that go. Two threads tell it.
+// Tells of devices that come, and of the nodes of devices that go.
 class Telling {
  public:
   Telling(std::vector<AttachedDevice> known, bool json) : known_(std::move(known)), json_(json) {}
 
   void plugged(const std::optional<AttachedDevice>& device) {
-    const std::lock_guard lock(mutex_);
     if (!device || find(device->node) != known_.end()) return;
     if (json_)
       tell({{"event", "plugged"}, {"node", device->node.string()}, {"device", as_json(*device)}});
@@ -119,7 +115,6 @@ class Telling {
     known_.push_back(*device);
   }
   void unplugged(const std::filesystem::path& node) {
-    const std::lock_guard lock(mutex_);
     const auto at = find(node);
     if (at == known_.end()) return;
     if (json_)
@@ -138,24 +133,16 @@ class Telling {
     std::fflush(stdout);
   }
 
-  std::mutex mutex_;
   std::vector<AttachedDevice> known_;
   bool json_;
 };
 
 // Until Ctrl-C.
-int watch(PlugMonitor& inputs, NodeMonitor& nodes, Telling& telling, InterruptWatch& interrupt) {
+int watch(NodeMonitor& monitor, Telling& telling, InterruptWatch& interrupt) {
   std::atomic<bool> ended{false};
-  std::thread watching_inputs([&] {
+  std::thread watching([&] {
     while (!ended)
-      if (const auto event = inputs.next(std::nullopt)) {
-        if (event->plugged && event->device) telling.plugged(attached(*event->device));
-        if (!event->plugged) telling.unplugged(event->node);
-      }
-  });
-  std::thread watching_nodes([&] {
-    while (!ended)
-      if (const auto event = nodes.next(std::nullopt)) {
+      if (const auto event = monitor.next(std::nullopt)) {
         if (event->plugged)
           telling.plugged(attached(event->node));
         else
@@ -164,10 +151,8 @@ int watch(PlugMonitor& inputs, NodeMonitor& nodes, Telling& telling, InterruptWa
   });
   interrupt.wait(std::nullopt);
   ended = true;
-  inputs.wake();
-  nodes.wake();
-  watching_inputs.join();
-  watching_nodes.join();
+  monitor.wake();
+  watching.join();
   return 130;
 }
 
@@ -192,16 +177,14 @@ int list(bool json) {
 
 int list_and_watch(bool json) {
   InterruptWatch interrupt;  // before any thread starts
-  // The monitors first, so that nothing plugged in meanwhile is missed.
-  auto inputs = PlugMonitor::open();
-  if (!inputs) return report(inputs.error());
-  auto nodes = NodeMonitor::open(node_kinds);
-  if (!nodes) return report(nodes.error());
+  // The monitor first, so that nothing plugged in meanwhile is missed.
+  auto monitor = NodeMonitor::open(all_node_kinds);
+  if (!monitor) return report(monitor.error());
   const auto found = attached_devices();
   if (!found) return report(found.error());
   print_all(*found, json, -1);
   Telling telling(*found, json);
-  return watch(**inputs, **nodes, telling, interrupt);
+  return watch(**monitor, telling, interrupt);
 }
 
 }  // namespace

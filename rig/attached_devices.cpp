@@ -39,19 +39,12 @@ Result<std::unique_ptr<ByteSource>> open_camera(const std::filesystem::path& nod
 
 }  // namespace
 
-std::optional<AttachedDevice> attached(const FoundDevice& found) {
-  const FamilyRow* family = find_family(found.description);
-  if (family == nullptr) return std::nullopt;
-  AttachedDevice device{found.node, found.description, family, found.access, found.rate_hz};
-  device.description.kind = family->kind;
-  return device;
-}
-
 std::optional<AttachedDevice> attached(const DeviceNode& node) {
   const FamilyRow* family = find_family(node.description);
   if (family == nullptr) return std::nullopt;
-  AttachedDevice device{node.path, node.description, family, node.access, std::nullopt};
+  AttachedDevice device{node.path, node.description, family, node.access, node.rate_hz};
   device.description.kind = family->kind;
+  if (node.kind == NodeKind::input) return device;
   // Every driver here tells ticks in microseconds, its counter's turns undone.
   device.description.clock = DeviceClock{.nominal_tick = 1e-6};
   if (device.description.name.empty()) device.description.name = family->model;
@@ -60,16 +53,11 @@ std::optional<AttachedDevice> attached(const DeviceNode& node) {
 
 Result<std::vector<AttachedDevice>> attached_devices() {
   std::vector<AttachedDevice> devices;
-  const auto add = [&devices](const auto& found) {
-    if (auto device = attached(found)) devices.push_back(std::move(*device));
-  };
-  const auto inputs = find_input_devices();
-  if (!inputs) return tl::unexpected(inputs.error());
-  for (const FoundDevice& found : *inputs) add(found);
-  for (const NodeKind kind : {NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video}) {
+  for (const NodeKind kind : all_node_kinds) {
     const auto nodes = find_nodes(kind);
     if (!nodes) return tl::unexpected(nodes.error());
-    for (const DeviceNode& node : *nodes) add(node);
+    for (const DeviceNode& node : *nodes)
+      if (auto device = attached(node)) devices.push_back(std::move(*device));
   }
   std::ranges::sort(devices, {}, &AttachedDevice::node);
   return devices;

@@ -8,7 +8,6 @@
 
 #include "drivers/families.h"
 #include "drivers/transport/device_nodes.h"
-#include "drivers/transport/evdev_devices.h"
 #include "signal/byte_source.h"
 #include "signal/device.h"
 #include "signal/result.h"
@@ -24,7 +23,6 @@ struct AttachedDevice {
 };
 
 // What udev tells, as a device that a driver here reads; none where there is no driver.
-std::optional<AttachedDevice> attached(const FoundDevice& found);
 std::optional<AttachedDevice> attached(const DeviceNode& node);
 
 // Ordered by node. Errors: unsupported where udev does not run.

@@ -1,7 +1,6 @@
 #include "rig/devices.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "drivers/transport/returning_source.h"
@@ -10,8 +9,6 @@
 namespace fude {
 namespace {
 
-constexpr std::array node_kinds{NodeKind::hidraw, NodeKind::usb, NodeKind::serial, NodeKind::video};
-
 Transfer plug_transfer(TransferKind kind) {
   return {.time = monotonic_now(), .stamped_by = StampedBy::arrival, .kind = kind};
 }
@@ -19,37 +16,27 @@ Transfer plug_transfer(TransferKind kind) {
 }  // namespace
 
 Result<std::unique_ptr<Devices>> Devices::open(DeviceListener listener, DevicesWish wish) {
-  // The monitors first, so that nothing plugged in meanwhile is missed.
-  auto inputs = PlugMonitor::open();
-  if (!inputs) return tl::unexpected(inputs.error());
-  auto nodes = NodeMonitor::open(node_kinds);
-  if (!nodes) return tl::unexpected(nodes.error());
+  // The monitor first, so that nothing plugged in meanwhile is missed.
+  auto monitor = NodeMonitor::open(all_node_kinds);
+  if (!monitor) return tl::unexpected(monitor.error());
   const auto found = attached_devices();
   if (!found) return tl::unexpected(found.error());
-  std::unique_ptr<Devices> devices(
-      new Devices(std::move(listener), std::move(wish), std::move(*inputs), std::move(*nodes)));
+  std::unique_ptr<Devices> devices(new Devices(std::move(listener), std::move(wish), std::move(*monitor)));
   for (const AttachedDevice& device : *found) devices->plugged(device);
   for (const NamedDevice& device : devices->wish_.named) devices->add(device);
-  devices->watching_inputs_ = std::thread([raw = devices.get()] { raw->watch_inputs(); });
-  devices->watching_nodes_ = std::thread([raw = devices.get()] { raw->watch_nodes(); });
+  devices->watching_ = std::thread([raw = devices.get()] { raw->watch(); });
   return devices;
 }
 
-Devices::Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<PlugMonitor> inputs,
-                 std::unique_ptr<NodeMonitor> nodes)
-    : listener_(std::move(listener)),
-      wish_(std::move(wish)),
-      inputs_(std::move(inputs)),
-      nodes_(std::move(nodes)) {}
+Devices::Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<NodeMonitor> monitor)
+    : listener_(std::move(listener)), wish_(std::move(wish)), monitor_(std::move(monitor)) {}
 
 Devices::~Devices() { stop(); }
 
 void Devices::stop() {
   stopping_ = true;
-  inputs_->wake();
-  nodes_->wake();
-  if (watching_inputs_.joinable()) watching_inputs_.join();
-  if (watching_nodes_.joinable()) watching_nodes_.join();
+  monitor_->wake();
+  if (watching_.joinable()) watching_.join();
   for (Slot& slot : slots_) slot.reader.reset();
 }
 
@@ -59,21 +46,9 @@ std::vector<ReportCounts> Devices::counts() const {
   return counts;
 }
 
-void Devices::watch_inputs() {
+void Devices::watch() {
   while (!stopping_) {
-    const auto event = inputs_->next(std::nullopt);
-    if (!event) continue;
-    if (!event->plugged) {
-      unplugged(event->node);
-    } else if (event->device) {
-      if (const auto device = attached(*event->device)) plugged(*device);
-    }
-  }
-}
-
-void Devices::watch_nodes() {
-  while (!stopping_) {
-    const auto event = nodes_->next(std::nullopt);
+    const auto event = monitor_->next(std::nullopt);
     if (!event) continue;
     if (!event->plugged) {
       unplugged(event->node.path);
@@ -85,7 +60,6 @@ void Devices::watch_nodes() {
 
 void Devices::plugged(const AttachedDevice& found) {
   if (wish_.wanted && !wish_.wanted(found)) return;
-  const std::lock_guard lock(mutex_);
   const auto open_here = [&](const Slot& slot) { return slot.node == found.node; };
   if (std::any_of(slots_.begin(), slots_.end(), open_here)) return;  // told twice
   auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) {
@@ -119,7 +93,6 @@ void Devices::plugged(const AttachedDevice& found) {
 }
 
 void Devices::add(const NamedDevice& named) {
-  const std::lock_guard lock(mutex_);
   slots_.push_back({named.description, {}, open_decoder(*named.family, named.description), nullptr});
   const std::size_t number = slots_.size() - 1;
   listener_.appeared(number, named.description);
@@ -142,7 +115,6 @@ void Devices::read(std::size_t number, std::unique_ptr<ByteSource> source) {
 }
 
 void Devices::unplugged(const std::filesystem::path& node) {
-  const std::lock_guard lock(mutex_);
   for (std::size_t number = 0; number < slots_.size(); ++number) {
     Slot& slot = slots_[number];
     if (slot.node != node) continue;

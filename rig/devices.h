@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <thread>
@@ -15,7 +14,6 @@
 
 #include "drivers/decoder.h"
 #include "drivers/transport/device_nodes.h"
-#include "drivers/transport/evdev_devices.h"
 #include "rig/attached_devices.h"
 #include "rig/device_reader.h"
 #include "signal/result.h"
@@ -67,10 +65,8 @@ class Devices {
     std::unique_ptr<DeviceReader> reader;
   };
 
-  Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<PlugMonitor> inputs,
-          std::unique_ptr<NodeMonitor> nodes);
-  void watch_inputs();
-  void watch_nodes();
+  Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<NodeMonitor> monitor);
+  void watch();
   void plugged(const AttachedDevice& found);
   void unplugged(const std::filesystem::path& node);
   void add(const NamedDevice& named);
@@ -78,13 +74,10 @@ class Devices {
 
   DeviceListener listener_;
   DevicesWish wish_;
-  std::unique_ptr<PlugMonitor> inputs_;
-  std::unique_ptr<NodeMonitor> nodes_;
-  std::mutex mutex_;  // of the slots, between the two that watch
-  std::vector<Slot> slots_;
+  std::unique_ptr<NodeMonitor> monitor_;
+  std::vector<Slot> slots_;  // the watching thread's, once it runs
   std::atomic<bool> stopping_{false};
-  std::thread watching_inputs_;
-  std::thread watching_nodes_;
+  std::thread watching_;
 };
 
 }  // namespace fude

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/transport/input_node.h"
+
 namespace fude {
 namespace {
 
@@ -16,10 +18,11 @@ struct Kind {
   const char* type;  // udev's DEVTYPE, or null
   const char* transport;
 };
-constexpr std::array<Kind, 4> kinds{{{NodeKind::hidraw, "hidraw", nullptr, "hidraw"},
-                                     {NodeKind::usb, "usb", "usb_device", "usb"},
-                                     {NodeKind::serial, "tty", nullptr, "serial"},
-                                     {NodeKind::video, "video4linux", nullptr, "v4l2"}}};
+constexpr std::array<Kind, all_node_kinds.size()> kinds{{{NodeKind::input, "input", nullptr, "evdev"},
+                                                         {NodeKind::hidraw, "hidraw", nullptr, "hidraw"},
+                                                         {NodeKind::usb, "usb", "usb_device", "usb"},
+                                                         {NodeKind::serial, "tty", nullptr, "serial"},
+                                                         {NodeKind::video, "video4linux", nullptr, "v4l2"}}};
 
 constexpr std::uint16_t bus_usb = 3;  // BUS_USB of linux/input.h
 
@@ -61,11 +64,17 @@ std::optional<DeviceNode> known_node(udev_device* device, const Kind& kind) {
   DeviceNode node;
   node.kind = kind.kind;
   node.path = path;
-  DeviceDescription& description = node.description;
-  if (usb != nullptr) {
-    describe_usb(usb, description);
-    node.syspath = text(udev_device_get_syspath(usb));
+  if (usb != nullptr) node.syspath = text(udev_device_get_syspath(usb));
+  if (kind.kind == NodeKind::input) {
+    auto input = input_node(device);
+    if (!input) return std::nullopt;
+    node.description = std::move(input->description);
+    node.access = input->access;
+    node.rate_hz = input->rate_hz;
+    return node;
   }
+  DeviceDescription& description = node.description;
+  if (usb != nullptr) describe_usb(usb, description);
   if (kind.kind == NodeKind::hidraw && hid != nullptr) describe_hid(hid, description);
   if (kind.kind == NodeKind::video) description.name = attribute(device, "name");
   description.transport = kind.transport;
@@ -74,11 +83,15 @@ std::optional<DeviceNode> known_node(udev_device* device, const Kind& kind) {
   return node;
 }
 
+// The kernel also gives input devices nodes in older ways (mouse0, js0).
+bool is_event_node(udev_device* device) { return text(udev_device_get_sysname(device)).starts_with("event"); }
+
 const Kind* kind_of(udev_device* device) {
   const std::string subsystem = text(udev_device_get_subsystem(device));
   const std::string type = text(udev_device_get_devtype(device));
   for (const Kind& kind : kinds)
-    if (subsystem == kind.subsystem && (kind.type == nullptr || type == kind.type)) return &kind;
+    if (subsystem == kind.subsystem && (kind.type == nullptr || type == kind.type))
+      return kind.kind != NodeKind::input || is_event_node(device) ? &kind : nullptr;
   return nullptr;
 }
 
@@ -97,9 +110,10 @@ Result<std::vector<DeviceNode>> find_nodes(NodeKind kind) {
   udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(list.get())) {
     const UdevDevice device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)),
                             udev_device_unref);
-    // One that udev has not handled yet may lack its rights, and a USB device its interfaces.
-    if (!device || kind_of(device.get()) == nullptr || udev_device_get_is_initialized(device.get()) <= 0)
-      continue;
+    if (!device || kind_of(device.get()) == nullptr) continue;
+    // One that udev has not handled yet may lack its rights, and a USB device its interfaces; it is announced
+    // again. An input device tells all there is before.
+    if (kind != NodeKind::input && udev_device_get_is_initialized(device.get()) <= 0) continue;
     if (auto node = known_node(device.get(), row(kind))) nodes.push_back(std::move(*node));
   }
   std::sort(nodes.begin(), nodes.end(),

@@ -1,7 +1,8 @@
-// The nodes of /dev through which devices other than input devices are reached, as udev knows them, and
-// their coming and going.
+// The nodes of /dev through which devices are reached, as udev knows them, and their coming and going.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,20 +18,26 @@
 namespace fude {
 
 enum class NodeKind : std::uint8_t {
+  input,   // /dev/input/event5: a pen tablet or a touch surface; other input devices are passed over
   hidraw,  // /dev/hidraw0
   usb,     // /dev/bus/usb/001/004, a whole device
   serial,  // /dev/ttyACM0 or /dev/ttyUSB0: a port of a USB device
   video,   // /dev/video0
 };
 
+inline constexpr std::array all_node_kinds{NodeKind::input, NodeKind::hidraw, NodeKind::usb, NodeKind::serial,
+                                           NodeKind::video};
+
 struct DeviceNode {
   NodeKind kind = NodeKind::hidraw;
   std::filesystem::path path;
-  // Name, bus, vendor, product, version, serial, id and transport; `kind` is `other`. A serial port is known
-  // by the USB device that it belongs to, a camera too where it has one.
+  // Of an input device as input_node() tells it. Else name, bus, vendor, product, version, serial, id and
+  // transport, its `kind` is `other`; a serial port is known by the USB device that it belongs to, a camera
+  // too where it has one.
   DeviceDescription description;
   std::string syspath;  // the same for all nodes of one USB device: its own; empty where there is none
   bool access = false;
+  std::optional<double> rate_hz;  // how often USB asks an input device, where that is known
 };
 
 // Ordered by path. Errors: unsupported where udev does not run.

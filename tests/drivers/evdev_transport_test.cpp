@@ -11,7 +11,7 @@
 #include "capture/import/import.h"
 #include "drivers/tablet/identify.h"
 #include "drivers/tablet/pen_decoder.h"
-#include "drivers/transport/evdev_devices.h"
+#include "drivers/transport/device_nodes.h"
 #include "drivers/transport/evdev_source.h"
 #include "tests/fakes/mock_tablet.h"
 #include "tests/fakes/recordings.h"
@@ -67,10 +67,10 @@ TEST_F(EvdevTransport, TabletsAreFoundAndOthersPassedOver) {
   keyboard.axes.clear();
   MockTablet other(testbed_.get(), keyboard, 3);
   MockTablet tablet(testbed_.get(), pen_tablet(), 5);
-  const auto found = find_input_devices();
+  const auto found = find_nodes(NodeKind::input);
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_EQ(found->size(), 1u);
-  EXPECT_EQ(found->at(0).node, tablet.node());
+  EXPECT_EQ(found->at(0).path, tablet.node());
   EXPECT_TRUE(found->at(0).access);
   EXPECT_EQ(found->at(0).description, identified(pen_tablet()));
   EXPECT_EQ(found->at(0).description.id, "056a:0304:4711");
@@ -80,7 +80,7 @@ TEST_F(EvdevTransport, ADeviceThatCallsItselfNothingHasUdevsSerial) {
   DeviceDescription device = pen_tablet();
   device.serial.clear();
   MockTablet tablet(testbed_.get(), device, 5);
-  EXPECT_EQ(find_input_devices().value().at(0).description.id, "056a:0304:FROMUDEV");
+  EXPECT_EQ(find_nodes(NodeKind::input).value().at(0).description.id, "056a:0304:FROMUDEV");
 }
 
 TEST_F(EvdevTransport, WhatIsHeldAtTheStartIsToldFirst) {
@@ -156,21 +156,20 @@ TEST_F(EvdevTransport, UnplugInMidStrokeIsAnEventThenDeviceGone) {
 }
 
 TEST_F(EvdevTransport, ComingAndGoingIsFollowed) {
-  const auto monitor = PlugMonitor::open();
+  const auto monitor = NodeMonitor::open(all_node_kinds);
   ASSERT_TRUE(monitor) << monitor.error().message;
   MockTablet tablet(testbed_.get(), pen_tablet(), 5);
   const auto came = (*monitor)->next(soon());
   ASSERT_TRUE(came);
   EXPECT_TRUE(came->plugged);
-  EXPECT_EQ(came->node, tablet.node());
-  ASSERT_TRUE(came->device);
-  EXPECT_EQ(came->device->description.id, "056a:0304:4711");
+  EXPECT_EQ(came->node.path, tablet.node());
+  EXPECT_EQ(came->node.description.id, "056a:0304:4711");
   tablet.announce_removal();
   auto went = (*monitor)->next(soon());
   if (went && went->plugged) went = (*monitor)->next(soon());  // it was told of twice
   ASSERT_TRUE(went);
   EXPECT_FALSE(went->plugged);
-  EXPECT_EQ(went->node, tablet.node());
+  EXPECT_EQ(went->node.path, tablet.node());
 }
 
 TEST_F(EvdevTransport, MissingAndForeignFilesAreNamed) {

@@ -6,19 +6,20 @@
 #include <memory>
 #include <stdexcept>
 
-#include "drivers/transport/evdev_devices.h"
+#include "drivers/transport/device_nodes.h"
 #include "tests/lab/patience.h"
 
 namespace fude::lab {
 
 // `plug` makes the device; the pen tablet that appears then is it. Throws when none does within patience().
-inline FoundDevice attached_pen(const std::function<void()>& plug) {
-  auto monitor = PlugMonitor::open();
+inline DeviceNode attached_pen(const std::function<void()>& plug) {
+  constexpr NodeKind kind = NodeKind::input;
+  auto monitor = NodeMonitor::open({&kind, 1});
   if (!monitor) throw std::runtime_error(monitor.error().message);
   plug();
   const Timestamp deadline = patience();
   while (auto event = (*monitor)->next(deadline))
-    if (event->device) return *event->device;
+    if (event->plugged) return event->node;
   throw std::runtime_error("no pen tablet appeared");
 }
 

@@ -24,8 +24,8 @@ std::vector<PenSample> decoded(PenDecoder& decoder, const std::vector<Transfer>&
 
 TEST(EvdevFaults, FramesCarryTheKernelsMonotonicTime) {
   std::unique_ptr<UinputPen> pen;
-  const FoundDevice found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
-  auto source = EvdevSource::open(found.node);
+  const DeviceNode found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
+  auto source = EvdevSource::open(found.path);
   ASSERT_TRUE(source) << source.error().message;
   const Timestamp before = monotonic_now();
   pen->move(1, 2, 3);
@@ -42,8 +42,8 @@ TEST(EvdevFaults, AnOverfullBufferIsAGapAndThenTheTruth) {
   constexpr int flood = 200;
   constexpr int quiet = 5;
   std::unique_ptr<UinputPen> pen;
-  const FoundDevice found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
-  auto source = EvdevSource::open(found.node);
+  const DeviceNode found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
+  auto source = EvdevSource::open(found.path);
   ASSERT_TRUE(source) << source.error().message;
   SessionRecording recording(found.description);
   for (int i = 1; i <= quiet; ++i) {
@@ -79,7 +79,7 @@ TEST(EvdevFaults, AnOverfullBufferIsAGapAndThenTheTruth) {
 TEST(EvdevFaults, PulledOutAndPutBackInMidStream) {
   constexpr int frames = 12;
   std::unique_ptr<UinputPen> pen;
-  FoundDevice found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
+  DeviceNode found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
   const DeviceDescription described = found.description;
   SessionRecording recording(described);
   std::vector<int> arrived;  // frames of each life that were read
@@ -92,7 +92,7 @@ TEST(EvdevFaults, PulledOutAndPutBackInMidStream) {
       back.time = monotonic_now();
       recording.add(back);
     }
-    auto source = EvdevSource::open(found.node);
+    auto source = EvdevSource::open(found.path);
     ASSERT_TRUE(source) << source.error().message;
     const std::size_t before = recording.size();
     for (int i = 1; i <= frames; ++i) {

@@ -39,8 +39,7 @@ struct Played {
 Played play(const HidIdentity& identity, const Bytes& descriptor, const std::vector<Bytes>& reports,
             Meaning meaning, int position_fuzz) {
   std::unique_ptr<UhidDevice> device;
-  const FoundDevice found =
-      attached_pen([&] { device = std::make_unique<UhidDevice>(identity, descriptor); });
+  const DeviceNode found = attached_pen([&] { device = std::make_unique<UhidDevice>(identity, descriptor); });
   Played played;
   played.description = found.description;
   EXPECT_TRUE(found.access);
@@ -48,9 +47,9 @@ Played play(const HidIdentity& identity, const Bytes& descriptor, const std::vec
   EXPECT_EQ(found.description.product, identity.product);
   EXPECT_EQ(found.description.serial, identity.serial);
 
-  auto source = EvdevSource::open(found.node);
+  auto source = EvdevSource::open(found.path);
   if (!source) throw std::runtime_error(source.error().message);
-  RawEvents raw(found.node);
+  RawEvents raw(found.path);
   SessionRecording recording(found.description);
   std::vector<RawFrame> sent;
   std::vector<std::size_t> after;  // transfers recorded once report i was sent

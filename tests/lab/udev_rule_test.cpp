@@ -49,8 +49,8 @@ TEST(UdevRule, HidDevicesOfOursAndNoOthers) {
 
 TEST(UdevRule, PensAndSerialPorts) {
   std::unique_ptr<UinputPen> pen;
-  const FoundDevice found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
-  EXPECT_TRUE(user_may_open("input", found.node));
+  const DeviceNode found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
+  EXPECT_TRUE(user_may_open("input", found.path));
   UsbGadget receiver({0x1209, 0x0002, "SOUND2", "ultrasonic receiver"}, 0);
   receiver.add("acm.lab");
   const DeviceNode port = attached_node(NodeKind::serial, "1209:0002:SOUND2", [&] { receiver.plug(); });

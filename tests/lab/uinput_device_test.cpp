@@ -35,13 +35,13 @@ DeviceDescription pen() {
 TEST(UinputDevices, StandAsDescribedAndSendWhatTheyAreGiven) {
   const EvdevEvent serial{EV_MSC, MSC_SERIAL, 0};
   std::unique_ptr<UinputDevice> device;
-  const FoundDevice found = attached_pen([&] {
+  const DeviceNode found = attached_pen([&] {
     auto made = UinputDevice::create(pen(), {&serial, 1});
     if (!made) throw std::runtime_error(made.error().message);
     device = std::move(*made);
   });
-  EXPECT_EQ(device->node(), found.node);
-  auto source = EvdevSource::open(found.node);
+  EXPECT_EQ(device->node(), found.path);
+  auto source = EvdevSource::open(found.path);
   ASSERT_TRUE(source) << source.error().message;
   DeviceDescription expected = pen();
   for (AxisRange& axis : expected.axes) axis.fuzz = 0;

@@ -1,8 +1,7 @@
-#include "drivers/transport/evdev_devices.h"
+#include "drivers/transport/input_node.h"
 
 #include <linux/input.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <string_view>
@@ -11,7 +10,6 @@
 #include "drivers/tablet/identify.h"
 #include "drivers/touch/touch_decoder.h"
 #include "drivers/transport/evdev_source.h"
-#include "drivers/transport/udev_device.h"
 
 namespace fude {
 namespace {
@@ -64,12 +62,13 @@ std::optional<double> polling_rate(udev_device* device) {
   return std::nullopt;
 }
 
-std::optional<FoundDevice> known_device(udev_device* event) {
+}  // namespace
+
+std::optional<InputNode> input_node(udev_device* event) {
   const char* node = udev_device_get_devnode(event);
   udev_device* input = udev_device_get_parent_with_subsystem_devtype(event, "input", nullptr);
   if (node == nullptr || input == nullptr) return std::nullopt;
-  FoundDevice found;
-  found.node = node;
+  InputNode found;
   if (const auto source = EvdevSource::open(node)) {
     found.access = true;
     found.description = (*source)->description();
@@ -85,63 +84,6 @@ std::optional<FoundDevice> known_device(udev_device* event) {
   found.description = identified(std::move(found.description));
   found.rate_hz = polling_rate(event);
   return found;
-}
-
-bool is_event_node(udev_device* device) {
-  return std::string_view(text(udev_device_get_sysname(device))).starts_with("event");
-}
-
-constexpr const char* no_udev = "udev does not answer; devices can only be found where it runs";
-
-}  // namespace
-
-Result<std::vector<FoundDevice>> find_input_devices() {
-  const std::unique_ptr<udev, decltype(&udev_unref)> context(udev_new(), udev_unref);
-  if (!context) return failure(Fault::unsupported, no_udev);
-  const std::unique_ptr<udev_enumerate, decltype(&udev_enumerate_unref)> list(
-      udev_enumerate_new(context.get()), udev_enumerate_unref);
-  if (!list || udev_enumerate_add_match_subsystem(list.get(), "input") < 0 ||
-      udev_enumerate_scan_devices(list.get()) < 0)
-    return failure(Fault::unsupported, no_udev);
-
-  std::vector<FoundDevice> devices;
-  udev_list_entry* entry = nullptr;
-  udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(list.get())) {
-    const UdevDevice device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)),
-                            udev_device_unref);
-    if (!device || !is_event_node(device.get())) continue;
-    if (auto known = known_device(device.get())) devices.push_back(std::move(*known));
-  }
-  std::sort(devices.begin(), devices.end(),
-            [](const FoundDevice& a, const FoundDevice& b) { return a.node < b.node; });
-  return devices;
-}
-
-Result<std::unique_ptr<PlugMonitor>> PlugMonitor::open() {
-  Udev context(udev_new(), udev_unref);
-  UdevMonitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr,
-                      udev_monitor_unref);
-  if (!monitor || udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "input", nullptr) < 0 ||
-      udev_monitor_enable_receiving(monitor.get()) < 0)
-    return failure(Fault::unsupported, no_udev);
-  return std::unique_ptr<PlugMonitor>(new PlugMonitor(std::move(context), std::move(monitor)));
-}
-
-PlugMonitor::PlugMonitor(Udev udev, UdevMonitor monitor)
-    : udev_(std::move(udev)), monitor_(std::move(monitor)) {}
-
-std::optional<PlugEvent> PlugMonitor::next(std::optional<Timestamp> deadline) {
-  for (;;) {
-    if (!waker_.wait(udev_monitor_get_fd(monitor_.get()), deadline).ready) return std::nullopt;
-    const UdevDevice device(udev_monitor_receive_device(monitor_.get()), udev_device_unref);
-    if (!device || !is_event_node(device.get())) continue;
-    const std::string action = text(udev_device_get_action(device.get()));
-    const char* node = udev_device_get_devnode(device.get());
-    if (node == nullptr || (action != "add" && action != "remove")) continue;
-    PlugEvent event{.plugged = action == "add", .node = node, .device = std::nullopt};
-    if (event.plugged) event.device = known_device(device.get());
-    return event;
-  }
 }
 
 }  // namespace fude
