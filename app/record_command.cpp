@@ -3,11 +3,14 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "capture/session_words.h"
 #include "rig/named_device.h"
 #include "rig/record_session.h"
 
@@ -20,6 +23,10 @@ struct Options {
   std::string report;
   double seconds = 0;  // 0: until Ctrl-C
   bool force = false;
+  std::string camera_size;
+  std::string camera_format;
+  std::optional<double> camera_exposure_ms;
+  CameraSettings camera;
 };
 
 using Json = nlohmann::ordered_json;
@@ -62,9 +69,31 @@ int write_report(const std::string& path, const std::vector<RecordedStream>& str
   return report({Fault::storage, path + " cannot be written; choose another name for the report"});
 }
 
+// "1280x720".
+std::string size_fault(const std::string& text) {
+  std::int32_t width = 0, height = 0;
+  char cross = 0;
+  std::string rest;
+  std::istringstream words(text);
+  const bool read = words >> width >> cross >> height && !(words >> rest);
+  const auto fits = [](std::int32_t side) { return side >= 1 && side <= 65535; };
+  return read && cross == 'x' && fits(width) && fits(height) ? "" : "give a size as 1280x720";
+}
+
+CameraSettings camera_settings(const Options& options) {
+  CameraSettings camera = options.camera;
+  if (!options.camera_size.empty()) {
+    char cross = 0;
+    std::istringstream(options.camera_size) >> camera.width >> cross >> camera.height;
+  }
+  if (!options.camera_format.empty()) camera.format = value_for<PixelFormat>(options.camera_format);
+  if (options.camera_exposure_ms) camera.exposure_s = *options.camera_exposure_ms / 1e3;
+  return camera;
+}
+
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  RecordingWish wish{.overwrite = options.force, .named = {}};
+  RecordingWish wish{.overwrite = options.force, .named = {}, .camera = camera_settings(options)};
   for (const std::string& name : options.named) {
     auto device = named_device(name);
     if (!device) return report(device.error());
@@ -102,6 +131,16 @@ void add_record(CLI::App& app, int& status) {
   command->add_option("--seconds", options->seconds, "how long; without it until Ctrl-C")
       ->check(CLI::Range(0.001, 1e6));
   command->add_option("--report", options->report, "a JSON file of what each stream gave");
+  command->add_option("--camera-size", options->camera_size, "of every camera's pictures; default: 1280x720")
+      ->check(size_fault);
+  command->add_option("--camera-rate", options->camera.rate_hz, "pictures a second; default: 30")
+      ->check(CLI::Range(0.01, 10000.0));
+  command->add_option("--camera-format", options->camera_format, "default: the first that the camera has")
+      ->check(CLI::IsMember({"mjpeg", "yuyv", "grey"}));
+  command->add_option("--camera-exposure-ms", options->camera_exposure_ms, "held, not automatic")
+      ->check(CLI::Range(0.1, 100000.0));
+  command->add_option("--camera-gain", options->camera.gain, "held, in the camera's own units");
+  command->add_option("--camera-focus", options->camera.focus, "held, in the camera's own units");
   command->add_flag("--force", options->force, "replace an existing session");
   command->callback([options, &status] { status = record(*options); });
 }

@@ -10,7 +10,6 @@
 #include "drivers/transport/serial_source.h"
 #include "drivers/transport/usb_hid_source.h"
 #include "drivers/transport/usb_source.h"
-#include "drivers/transport/v4l2_source.h"
 
 namespace fude {
 namespace {
@@ -24,14 +23,12 @@ Result<std::unique_ptr<ByteSource>> as_bytes(Result<std::unique_ptr<Source>> sou
   return std::unique_ptr<ByteSource>(std::move(*source));
 }
 
-// In the first format that the camera has.
-Result<std::unique_ptr<ByteSource>> open_camera(const std::filesystem::path& node, CameraDecoder& decoder) {
-  Result<std::unique_ptr<V4l2Source>> source = nullptr;
-  for (const PixelFormat format : {PixelFormat::mjpeg, PixelFormat::yuyv, PixelFormat::grey}) {
-    CameraSettings settings;
-    settings.format = format;
-    source = V4l2Source::open(node, settings);
-    if (source || source.error().fault != Fault::unsupported) break;
+Result<std::unique_ptr<ByteSource>> open_camera(const std::filesystem::path& node, CameraDecoder& decoder,
+                                                CameraSettings wanted) {
+  auto source = V4l2Source::open(node, wanted);
+  if (!source && source.error().fault == Fault::unsupported && wanted.format) {
+    wanted.format.reset();
+    source = V4l2Source::open(node, wanted);
   }
   if (source) decoder.watch(source->get());
   return as_bytes(std::move(source));
@@ -63,10 +60,11 @@ Result<std::vector<AttachedDevice>> attached_devices() {
   return devices;
 }
 
-Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder) {
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder,
+                                                const CameraSettings& camera) {
   const std::string_view transport = device.description.transport;
   if (transport == "evdev") return as_bytes(EvdevSource::open(device.node));
-  if (transport == "v4l2") return open_camera(device.node, dynamic_cast<CameraDecoder&>(decoder));
+  if (transport == "v4l2") return open_camera(device.node, dynamic_cast<CameraDecoder&>(decoder), camera);
   if (transport == "hidraw") return as_bytes(HidrawSource::open(device.node));
   // The kernel's HID driver leaves the glove alone.
   if (transport == "usb" && device.family->family == Family::p5glove)

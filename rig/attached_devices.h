@@ -8,6 +8,7 @@
 
 #include "drivers/families.h"
 #include "drivers/transport/device_nodes.h"
+#include "drivers/transport/v4l2_source.h"
 #include "signal/byte_source.h"
 #include "signal/device.h"
 #include "signal/result.h"
@@ -28,8 +29,9 @@ std::optional<AttachedDevice> attached(const DeviceNode& node);
 // Ordered by node. Errors: unsupported where udev does not run.
 Result<std::vector<AttachedDevice>> attached_devices();
 
-// `decoder`: the device's own; a camera's is told which source it watches. Errors: those of the transport's
-// open().
-Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder);
+// `decoder`: the device's own; a camera's is told which source it watches. `camera` is what a camera is asked
+// for; one that has not the format is opened in one that it has. Errors: those of the transport's open().
+Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder,
+                                                const CameraSettings& camera);
 
 }  // namespace fude

@@ -68,11 +68,10 @@ void Devices::plugged(const AttachedDevice& found) {
   });
   const bool back = slot != slots_.end();
   auto decoder = back ? std::move(slot->decoder) : open_decoder(*found.family, found.description);
-  auto source = open_source(found, *decoder);
+  auto source = open_source(found, *decoder, wish_.camera);
   if (back) slot->decoder = std::move(decoder);
   if (!source) {
-    // The second node of a camera takes no pictures.
-    if (source.error().fault != Fault::unsupported) listener_.refused(source.error());
+    listener_.refused(source.error());
     return;
   }
   if (!back) {
@@ -89,6 +88,8 @@ void Devices::plugged(const AttachedDevice& found) {
   } else {
     listener_.appeared(number, slot->description);
   }
+  if (const auto* camera = dynamic_cast<const V4l2Source*>(source->get()); camera && listener_.camera)
+    listener_.camera(number, camera->settings());
   read(number, std::move(*source));
 }
 

@@ -28,6 +28,8 @@ struct DeviceListener {
   // A device that may not be read or does not answer; the message says what to do. Once each absence, from
   // any thread.
   std::function<void(const Error&)> refused;
+  // A camera was opened, after `appeared` and again when it is back: what it made of the wish. May be empty.
+  std::function<void(std::size_t device, const CameraSettings&)> camera = {};
 };
 
 // A device that no udev tells of: a network peer, or a serial line to which anything may be wired.
@@ -40,6 +42,7 @@ struct NamedDevice {
 struct DevicesWish {
   std::function<bool(const AttachedDevice&)> wanted;  // empty: all
   std::vector<NamedDevice> named;
+  CameraSettings camera;  // of every camera
 };
 
 class Devices {

@@ -6,6 +6,7 @@
 #include "capture/sample_columns.h"
 #include "drivers/transport/device_node.h"
 #include "drivers/transport/waker.h"
+#include "rig/camera_report.h"
 
 namespace fude {
 namespace {
@@ -45,7 +46,12 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
     raw->keep(device, transfer, samples);
   };
   listener.refused = [warn](const Error& error) { warn(error.message); };
-  auto devices = Devices::open(std::move(listener), {.wanted = {}, .named = std::move(wish.named)});
+  listener.camera = [raw, warn, asked = wish.camera](std::size_t device, const CameraSettings& given) {
+    raw->recorder_->add(SessionSetting{"camera_" + std::to_string(number(device)), camera_record(given)});
+    if (const std::string remark = camera_remark(asked, given); !remark.empty())
+      warn(raw->name_of(device) + ": " + remark);
+  };
+  auto devices = Devices::open(std::move(listener), {.named = std::move(wish.named), .camera = wish.camera});
   if (!devices) return tl::unexpected(devices.error());
   recording->devices_ = std::move(*devices);
   return recording;
@@ -59,6 +65,11 @@ void RecordingSession::begin(const DeviceDescription& device) {
   });
   const std::string name = same == 0 ? device.name : device.name + " " + std::to_string(same + 1);
   streams_.push_back(std::make_unique<Stream>(Stream{name, StreamMeter(device.clock)}));
+}
+
+std::string RecordingSession::name_of(std::size_t device) {
+  const std::lock_guard lock(mutex_);
+  return streams_.at(device)->name;
 }
 
 void RecordingSession::keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples) {

@@ -28,6 +28,7 @@ struct RecordedStream {
 struct RecordingWish {
   bool overwrite = false;  // an existing session, and only when there is something to record
   std::vector<NamedDevice> named;
+  CameraSettings camera;  // what every camera is asked for
 };
 
 class RecordingSession {
@@ -49,6 +50,7 @@ class RecordingSession {
   };
   explicit RecordingSession(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
   void begin(const DeviceDescription& device);
+  std::string name_of(std::size_t device);
   void keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples);
 
   std::unique_ptr<Recorder> recorder_;

@@ -53,6 +53,13 @@ void describe_hid(udev_device* hid, DeviceDescription& device) {
   device.serial = text(udev_device_get_property_value(hid, "HID_UNIQ"));
 }
 
+// A camera's second node, for data about its pictures, has the camera's name. Where udev does not say what a
+// node gives, it counts as a camera.
+bool gives_no_pictures(udev_device* video) {
+  const std::string gives = text(udev_device_get_property_value(video, "ID_V4L_CAPABILITIES"));
+  return !gives.empty() && gives.find(":capture:") == std::string::npos;
+}
+
 std::optional<DeviceNode> known_node(udev_device* device, const Kind& kind) {
   const char* path = udev_device_get_devnode(device);
   if (path == nullptr) return std::nullopt;
@@ -61,6 +68,7 @@ std::optional<DeviceNode> known_node(udev_device* device, const Kind& kind) {
                          : udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_device");
   udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
   if (kind.kind == NodeKind::serial && usb == nullptr) return std::nullopt;
+  if (kind.kind == NodeKind::video && gives_no_pictures(device)) return std::nullopt;
   DeviceNode node;
   node.kind = kind.kind;
   node.path = path;

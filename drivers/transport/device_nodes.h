@@ -22,7 +22,7 @@ enum class NodeKind : std::uint8_t {
   hidraw,  // /dev/hidraw0
   usb,     // /dev/bus/usb/001/004, a whole device
   serial,  // /dev/ttyACM0 or /dev/ttyUSB0: a port of a USB device
-  video,   // /dev/video0
+  video,   // /dev/video0: one that gives pictures; a camera's further node for their data is passed over
 };
 
 inline constexpr std::array all_node_kinds{NodeKind::input, NodeKind::hidraw, NodeKind::usb, NodeKind::serial,

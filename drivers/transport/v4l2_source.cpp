@@ -107,21 +107,30 @@ V4l2Source::~V4l2Source() {
 }
 
 Result<void> V4l2Source::choose_format() {
-  v4l2_format format{};
-  format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  format.fmt.pix.width = static_cast<std::uint32_t>(settings_.width);
-  format.fmt.pix.height = static_cast<std::uint32_t>(settings_.height);
-  format.fmt.pix.pixelformat = code_of(settings_.format);
-  format.fmt.pix.field = V4L2_FIELD_ANY;
-  const int status = ask(file_.get(), VIDIOC_S_FMT, &format);
-  if (status < 0 && errno == EBUSY)
-    return failure(Fault::busy, node_.string() + " is held by another program; end it first");
-  if (status < 0 || format.fmt.pix.pixelformat != code_of(settings_.format))
+  const auto tried = settings_.format ? std::vector{*settings_.format}
+                                      : std::vector{PixelFormat::mjpeg, PixelFormat::yuyv, PixelFormat::grey};
+  for (const PixelFormat wanted : tried) {
+    v4l2_format format{};
+    format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    format.fmt.pix.width = static_cast<std::uint32_t>(settings_.width);
+    format.fmt.pix.height = static_cast<std::uint32_t>(settings_.height);
+    format.fmt.pix.pixelformat = code_of(wanted);
+    format.fmt.pix.field = V4L2_FIELD_ANY;
+    const int status = ask(file_.get(), VIDIOC_S_FMT, &format);
+    if (status < 0 && errno == EBUSY)
+      return failure(Fault::busy, node_.string() + " is held by another program; end it first");
+    if (status < 0 || format.fmt.pix.pixelformat != code_of(wanted)) continue;
+    settings_.format = wanted;
+    settings_.width = static_cast<std::int32_t>(format.fmt.pix.width);
+    settings_.height = static_cast<std::int32_t>(format.fmt.pix.height);
+    return {};
+  }
+  if (settings_.format)
     return failure(Fault::unsupported,
                    node_.string() + " has not this format; try another (yuyv, mjpeg, grey)");
-  settings_.width = static_cast<std::int32_t>(format.fmt.pix.width);
-  settings_.height = static_cast<std::int32_t>(format.fmt.pix.height);
-  return {};
+  return failure(Fault::unsupported, node_.string() +
+                                         " is a camera without MJPEG, YUYV and GREY pictures, and others "
+                                         "are not read here; use another camera");
 }
 
 void V4l2Source::choose_rate() {
@@ -208,7 +217,7 @@ void V4l2Source::take_picture(bool hung_up) {
   const auto used = whole.first(std::min<std::size_t>(buffer.bytesused, whole.size()));
   frame_.time = {time, by, buffer.sequence, std::nullopt};
   frame_.moment = moment_of(buffer.flags);
-  frame_.format = settings_.format;
+  frame_.format = *settings_.format;
   frame_.width = settings_.width;
   frame_.height = settings_.height;
   frame_.exposure_s = settings_.exposure_s;

@@ -17,10 +17,10 @@
 namespace fude {
 
 struct CameraSettings {
-  PixelFormat format = PixelFormat::mjpeg;  // not png
+  std::optional<PixelFormat> format;  // not png; none: the first of mjpeg, yuyv, grey that the camera has
   std::int32_t width = 1280;
   std::int32_t height = 720;
-  double rate_hz = 30;
+  double rate_hz = 30;  // 0 in what a camera made of it: it does not say
   // Where given, the camera's own control is switched off and the value held.
   std::optional<double> exposure_s;
   std::optional<std::int32_t> gain;  // in the camera's own units, as is focus
@@ -30,12 +30,13 @@ struct CameraSettings {
 class V4l2Source final : public ByteSource {
  public:
   // Opens e.g. /dev/video0 for this program alone and streams. The camera takes the nearest size and rate
-  // that it has. Errors: see open_alone(); unsupported for what is no camera, or has not the format; busy.
+  // that it has. Errors: see open_alone(); unsupported for what is no camera, or has not the format (or none
+  // of the three); busy.
   static Result<std::unique_ptr<V4l2Source>> open(const std::filesystem::path& node,
                                                   const CameraSettings& settings);
   ~V4l2Source() override;
 
-  // What the camera made of the settings; controls are left out where it has none.
+  // What the camera made of the settings, its format among them; controls are left out where it has none.
   const CameraSettings& settings() const { return settings_; }
 
   // One `picture`, with the time that the driver gave it where that is on CLOCK_MONOTONIC.

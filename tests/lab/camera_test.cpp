@@ -103,6 +103,24 @@ TEST(Camera, GreyPicturesAreABytePerPixel) {
   EXPECT_EQ(refused.error().fault, Fault::unsupported);
 }
 
+TEST(Camera, AskedForNoFormatItTakesTheFirstThatItHas) {
+  CameraSettings any = small;
+  any.format.reset();
+  const auto source = V4l2Source::open(camera(), any);
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ((*source)->settings().format, PixelFormat::yuyv);  // vivid has no mjpeg
+}
+
+TEST(Camera, ItsNodeForDataAboutPicturesIsNoCamera) {
+  ASSERT_TRUE(std::filesystem::exists("/dev/video1"));
+  const auto refused = V4l2Source::open("/dev/video1", small);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::unsupported);
+  const auto nodes = find_nodes(NodeKind::video);
+  ASSERT_TRUE(nodes);
+  EXPECT_EQ(nodes->size(), 1u);
+}
+
 TEST(Camera, ControlsAreHeldWhereTheCameraHasThem) {
   CameraSettings fixed = small;
   fixed.gain = 42;
