@@ -25,6 +25,7 @@ void add_perform(CLI::App& fude, int& status);
 void add_play(CLI::App& fude, int& status);
 void add_record(CLI::App& fude, int& status);
 void add_replay(CLI::App& fude, int& status);
+void add_serve(CLI::App& fude, int& status);
 
 // One line on standard error, and the status that goes with it.
 int report(const Error& error);

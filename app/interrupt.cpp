@@ -24,6 +24,9 @@ InterruptWatch::InterruptWatch() {
 
 InterruptWatch::~InterruptWatch() {
   const sigset_t set = interrupts();
+  // Ctrl-C pressed twice, or sent to the group and to the program: the closing goes on.
+  constexpr timespec at_once{};
+  while (sigtimedwait(&set, nullptr, &at_once) > 0) continue;
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 

@@ -27,11 +27,12 @@ int main(int argc, char** argv) {
   fude::add_info(app, status);
   fude::add_devices(app, status);
   fude::add_doctor(app, status);
+  fude::add_monitor(app, status);
   fude::add_record(app, status);
+  fude::add_serve(app, status);
   fude::add_play(app, status);
   fude::add_bench(app, status);
 #ifdef FUDE_WINDOW
-  fude::add_monitor(app, status);
   fude::add_paint(app, status);
 #endif
   try {

@@ -20,7 +20,7 @@ struct Options {
   double delay_s = 1;
   std::size_t clients = 0;
   bool as_devices = false;
-  PoseServers::Ports ports;
+  PoseServers::Doors doors;
 };
 
 // The kernel forgets what a reader has not fetched when the device goes.
@@ -57,7 +57,7 @@ int play(const Options& options) {
   wish.speed = options.speed;
   wish.from = duration_of(options.from_s);
   wish.stream = options.stream;
-  wish.ports = options.ports;
+  wish.doors = options.doors;
   auto opened = SessionPlayer::open(std::move(*session), wish, std::make_shared<SystemClock>(), make_uinput);
   if (!opened) return report({opened.error().fault, options.session + ": " + opened.error().message});
   SessionPlayer& player = **opened;
@@ -107,8 +107,8 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--from", options->from_s, "seconds after the session's beginning")
       ->check(CLI::Range(0.0, 1e9));
   command->add_option("--stream", options->stream, "this device or stream alone, named as in fude info");
-  command->add_option("--openigtlink-port", options->ports.openigtlink, "0: a free one");
-  command->add_option("--vrpn-port", options->ports.vrpn, "0: a free one");
+  command->add_option("--openigtlink-port", options->doors.openigtlink, "0: a free one");
+  command->add_option("--vrpn-port", options->doors.vrpn, "0: a free one");
   command->add_option("--delay", options->delay_s, "seconds that the devices stand before they move")
       ->check(CLI::Range(0.0, 3600.0));
   command->add_option("--await-clients", options->clients, "begin when so many have connected");

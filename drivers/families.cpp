@@ -85,10 +85,19 @@ const FamilyRow* find_family(const DeviceDescription& device, std::optional<HidU
     return is_touch_surface(device) ? find_family("touch", "evdev") : nullptr;
   }
   if (device.transport == "v4l2") return find_family("camera", "v4l2");
+  if (device.vendor == 0)
+    return first([&](const FamilyRow& row) {
+      return row.vendor == 0 && device.transport == row.transport &&
+             device.name.starts_with(name_at(row, ""));
+    });
   return first([&](const FamilyRow& row) {
-    return row.vendor != 0 && device.transport == row.transport && device.vendor == row.vendor &&
+    return device.transport == row.transport && device.vendor == row.vendor &&
            device.product == row.product && (!usage || !row.usage || *usage == *row.usage);
   });
+}
+
+std::string name_at(const FamilyRow& row, std::string_view where) {
+  return std::string(row.model) + " at " + std::string(where);
 }
 
 const FamilyRow* find_family(std::string_view word, std::string_view transport) {

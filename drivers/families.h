@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -51,9 +52,12 @@ struct FamilyRow {
 
 std::span<const FamilyRow> family_rows();
 
-// By transport and identity, or by axes and keys for evdev; null where no driver here knows it. An unknown
-// usage counts as the right one.
+// By transport and identity, by axes and keys for evdev, or by the name that name_at() gave; null where no
+// driver here knows it. An unknown usage counts as the right one.
 const FamilyRow* find_family(const DeviceDescription& device, std::optional<HidUsage> usage = std::nullopt);
+
+// What a device without an identity is called: "VRPN at localhost:3883". A recording of it is known by this.
+std::string name_at(const FamilyRow& row, std::string_view where);
 
 // The first row of this word and transport; null where there is none.
 const FamilyRow* find_family(std::string_view word, std::string_view transport);

@@ -1,6 +1,9 @@
 #include "rig/import_session.h"
 
 #include <cstdio>
+#include <deque>
+#include <optional>
+#include <utility>
 
 #include "capture/sample_columns.h"
 #include "capture/session_writer.h"
@@ -65,42 +68,101 @@ class SampleTray {
   std::map<std::string, std::vector<ClockReading>> ticks_;
 };
 
-// Actions go between the samples, where their time puts them.
-Result<ImportedStream> write_stream(SessionWriter& out, const RawRecording& recording,
-                                    std::span<const Action> actions) {
-  RecordedDriver driver(recording.device, recording.transfers);
-  ImportedStream stream;
-  stream.events = recording.counts.events;
-  stream.frames = recording.counts.frames;
-  stream.passed_over = recording.passed_over;
-  stream.device = recording.device ? driver.device().name : "";
-  stream.raw_only = !driver.decodes() && driver.device().transport != "text";
-
-  const auto number = out.add_device(driver.device());
-  if (!number) return tl::unexpected(number.error());
-  SampleTray tray(out, *number, stream);
-  std::vector<Sample> made;
-  for (const Transfer& transfer : recording.transfers) {
-    for (; !actions.empty() && actions.front().time <= transfer.time; actions = actions.subspan(1))
-      if (auto r = out.add_action(actions.front()); !r) return tl::unexpected(r.error());
-    if (auto r = out.add_transfer(*number, transfer); !r) return tl::unexpected(r.error());
-    const std::uint64_t before = driver.not_understood();
-    driver.decode(transfer, made);
-    if (driver.not_understood() > before) pass_over(stream.passed_over, what_came(transfer));
-    for (const Sample& sample : made)
-      if (auto r = tray.add(sample); !r) return tl::unexpected(r.error());
-    made.clear();
+// One device's recording on its way into the session, input by input.
+class StreamWriter {
+ public:
+  StreamWriter(SessionWriter& out, const RawRecording& recording)
+      : out_(out), recording_(recording), driver_(recording.device, recording.transfers) {
+    stream_.events = recording.counts.events;
+    stream_.frames = recording.counts.frames;
+    stream_.passed_over = recording.passed_over;
+    stream_.device = recording.device ? driver_.device().name : "";
+    stream_.raw_only = !driver_.decodes() && driver_.device().transport != "text";
   }
-  for (const Sample& sample : recording.samples)
-    if (auto r = tray.add(sample); !r) return tl::unexpected(r.error());
-  stream.lost = driver.lost();
-  stream.out_of_range = driver.out_of_range();
-  stream.pen = stream.pen || driver.device().kind == DeviceKind::pen_tablet;
-  if (auto r = tray.add_clock_fits(driver.device()); !r) return tl::unexpected(r.error());
-  for (const auto& [what, count] : stream.passed_over)
-    if (auto r = out.add_passed_over({*number, what, static_cast<std::int64_t>(count)}); !r)
-      return tl::unexpected(r.error());
-  return stream;
+
+  Result<void> begin() {
+    const auto number = out_.add_device(driver_.device());
+    if (!number) return tl::unexpected(number.error());
+    number_ = *number;
+    tray_.emplace(out_, number_, stream_);
+    return {};
+  }
+
+  // Of the next input; none at the end.
+  std::optional<Timestamp> next_time() const {
+    if (transfer_ < recording_.transfers.size()) return recording_.transfers[transfer_].time;
+    if (sample_ < recording_.samples.size()) return time_of(recording_.samples[sample_]).host;
+    return std::nullopt;
+  }
+
+  Result<void> write_next() {
+    if (transfer_ == recording_.transfers.size()) return tray_->add(recording_.samples[sample_++]);
+    const Transfer& transfer = recording_.transfers[transfer_++];
+    if (auto r = out_.add_transfer(number_, transfer); !r) return tl::unexpected(r.error());
+    const std::uint64_t before = driver_.not_understood();
+    made_.clear();
+    driver_.decode(transfer, made_);
+    if (driver_.not_understood() > before) pass_over(stream_.passed_over, what_came(transfer));
+    for (const Sample& sample : made_)
+      if (auto r = tray_->add(sample); !r) return r;
+    return {};
+  }
+
+  Result<ImportedStream> finish() {
+    stream_.lost = driver_.lost();
+    stream_.out_of_range = driver_.out_of_range();
+    stream_.pen = stream_.pen || driver_.device().kind == DeviceKind::pen_tablet;
+    if (auto r = tray_->add_clock_fits(driver_.device()); !r) return tl::unexpected(r.error());
+    for (const auto& [what, count] : stream_.passed_over)
+      if (auto r = out_.add_passed_over({number_, what, static_cast<std::int64_t>(count)}); !r)
+        return tl::unexpected(r.error());
+    return stream_;
+  }
+
+ private:
+  SessionWriter& out_;
+  const RawRecording& recording_;
+  RecordedDriver driver_;
+  DeviceNumber number_ = 0;
+  ImportedStream stream_;
+  std::optional<SampleTray> tray_;
+  std::size_t transfer_ = 0;
+  std::size_t sample_ = 0;
+  std::vector<Sample> made_;
+};
+
+// The one whose next input is the earliest; null at the end of all.
+StreamWriter* earliest(std::deque<StreamWriter>& streams) {
+  StreamWriter* first = nullptr;
+  for (StreamWriter& stream : streams)
+    if (const auto time = stream.next_time(); time && (!first || *time < *first->next_time()))
+      first = &stream;
+  return first;
+}
+
+// All in the order of their times, each device's own inputs in theirs; actions where their time puts them.
+Result<std::vector<ImportedStream>> write_streams(SessionWriter& out,
+                                                  std::span<const RawRecording> recordings,
+                                                  std::span<const Action> actions) {
+  std::deque<StreamWriter> streams;  // each points into itself
+  for (const RawRecording& recording : recordings) {
+    streams.emplace_back(out, recording);
+    if (auto r = streams.back().begin(); !r) return tl::unexpected(r.error());
+  }
+  while (StreamWriter* next = earliest(streams)) {
+    for (; !actions.empty() && actions.front().time <= *next->next_time(); actions = actions.subspan(1))
+      if (auto r = out.add_action(actions.front()); !r) return tl::unexpected(r.error());
+    if (auto r = next->write_next(); !r) return tl::unexpected(r.error());
+  }
+  for (const Action& action : actions)
+    if (auto r = out.add_action(action); !r) return tl::unexpected(r.error());
+  std::vector<ImportedStream> written;
+  for (StreamWriter& stream : streams) {
+    auto finished = stream.finish();
+    if (!finished) return tl::unexpected(finished.error());
+    written.push_back(std::move(*finished));
+  }
+  return written;
 }
 
 }  // namespace
@@ -120,13 +182,8 @@ Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecordin
     auto out = SessionWriter::create(unfinished);
     if (!out) return tl::unexpected(out.error());
     if (auto r = out->set("imported_from", origin); !r) return tl::unexpected(r.error());
-    std::vector<ImportedStream> streams;
-    for (const RawRecording& recording : recordings) {
-      auto stream = write_stream(*out, recording, actions);
-      if (!stream) return tl::unexpected(stream.error());
-      actions = {};
-      streams.push_back(std::move(*stream));
-    }
+    auto streams = write_streams(*out, recordings, actions);
+    if (!streams) return streams;
     if (auto r = out->close(); !r) return tl::unexpected(r.error());
     return streams;
   };

@@ -75,7 +75,7 @@ Result<NamedDevice> named_device(const std::string& text) {
   } else {
     return tl::unexpected(unreadable(text));
   }
-  device.name = std::string(named.family->model) + " at " + device.serial;
+  device.name = name_at(*named.family, device.serial);
   device.kind = named.family->kind;
   device.transport = named.family->transport;
   device.id = device_id(device);

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "capture/sample_columns.h"
 #include "capture/streams.h"
 #include "drivers/transport/evdev_state.h"
 #include "drivers/transport/uinput_device.h"
@@ -37,7 +38,9 @@ std::vector<EvdevEvent> undescribed_events(std::span<const Transfer> transfers) 
   return events;
 }
 
-bool is_pose(const RecordedSample& recorded) { return std::holds_alternative<PoseSample>(recorded.sample); }
+bool seen_by_tracker(const Sample& sample) {
+  return std::holds_alternative<PoseSample>(sample) || std::holds_alternative<PositionSample>(sample);
+}
 
 }  // namespace
 
@@ -92,11 +95,11 @@ Result<std::unique_ptr<SessionPlayer>> SessionPlayer::open(Session session, cons
       new SessionPlayer(std::move(session), wish, std::move(clock), std::move(make_input)));
   for (const RecordedDevice& recorded : player->session_.devices)
     if (part.empty() && (!device || *device == recorded.number)) player->add_device(recorded);
-  player->add_poses(device, part, wish.ports);
-  if (player->devices_.empty() && player->poses_.empty())
+  player->add_seen(device, part, wish.doors);
+  if (player->devices_.empty() && player->seen_.empty())
     return failure(Fault::not_found,
                    (wish.stream.empty() ? "the session" : "'" + wish.stream + "'") +
-                       std::string(" has nothing to play: no bytes of a device and no poses"));
+                       std::string(" has nothing to play: no bytes of a device, no poses and no positions"));
   return player;
 }
 
@@ -126,31 +129,32 @@ void SessionPlayer::add_device(const RecordedDevice& recorded) {
   if (device.wanted) make_input(device);
 }
 
-void SessionPlayer::add_poses(const std::optional<DeviceNumber>& device, const std::string& part,
-                              PoseServers::Ports ports) {
-  std::vector<std::string> tools;
-  std::map<std::pair<DeviceNumber, std::string>, ServedPose> known;
+void SessionPlayer::add_seen(const std::optional<DeviceNumber>& device, const std::string& part,
+                             const PoseServers::Doors& doors) {
+  std::vector<std::string> names;
+  std::map<std::pair<DeviceNumber, std::string>, Seen> known;
   for (const RecordedSample& recorded : session_.samples) {
-    if (!is_pose(recorded) || (device && *device != recorded.device)) continue;
-    const auto& sample = std::get<PoseSample>(recorded.sample);
-    if (!part.empty() && sample.tool != part) continue;
+    if (!seen_by_tracker(recorded.sample) || (device && *device != recorded.device)) continue;
+    const std::string tool = part_of(recorded.sample);
+    if (!part.empty() && tool != part) continue;
     const auto [served, added] =
-        known.try_emplace({recorded.device, sample.tool}, ServedPose{tools.size(), played_.size(), nullptr});
+        known.try_emplace({recorded.device, tool}, Seen{names.size(), played_.size(), nullptr});
     if (added) {
       const auto of_number = [&](const RecordedDevice& d) { return d.number == recorded.device; };
       const auto tracker = std::find_if(session_.devices.begin(), session_.devices.end(), of_number);
-      std::string name = sample.tool;
+      std::string name = tool;
       if (name.empty() && tracker != session_.devices.end()) name = tracker->description.name;
-      tools.push_back(name.empty() ? "tool" : name);
-      played_.push_back({.name = tools.back(), .outlet = {}});
+      names.push_back(name.empty() ? "tool" : name);
+      played_.push_back({.name = names.back(), .outlet = {}});
     }
-    poses_.push_back({served->second.tool, served->second.stream, &sample});
+    seen_.push_back({served->second.tool, served->second.stream, &recorded.sample});
   }
-  if (poses_.empty()) return;
-  std::stable_sort(poses_.begin(), poses_.end(), [](const ServedPose& a, const ServedPose& b) {
-    return a.sample->time.host < b.sample->time.host;
+  if (seen_.empty()) return;
+  std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
+    return time_of(*a.sample).host < time_of(*b.sample).host;
   });
-  servers_ = std::make_unique<PoseServers>(std::move(tools), ports);
+  servers_ = std::make_unique<PoseServers>(doors);
+  for (const std::string& name : names) servers_->add(name);
   for (const Error& error : servers_->refused()) notes_.push_back(error.message);
   std::string outlet;
   if (servers_->openigtlink())
@@ -210,14 +214,15 @@ bool SessionPlayer::play(const Heard& heard) {
     time_.recorded = Timestamp::max();
     for (const auto& device : devices_)
       time_.recorded = std::min(time_.recorded, *device->source.next_time());
-    if (!poses_.empty()) time_.recorded = std::min(time_.recorded, poses_.front().sample->time.host);
+    if (!seen_.empty()) time_.recorded = std::min(time_.recorded, time_of(*seen_.front().sample).host);
   }
   time_.played = clock_->now();
   for (const auto& device : devices_) {
     device->source.seek(time_.recorded, time_.played);
     lead_in(*device);
   }
-  while (next_pose_ < poses_.size() && poses_[next_pose_].sample->time.host < time_.recorded) ++next_pose_;
+  const auto seen_at = [this] { return time_of(*seen_[next_seen_].sample).host; };
+  while (next_seen_ < seen_.size() && seen_at() < time_.recorded) ++next_seen_;
 
   while (!stopping_) {
     Device* next = nullptr;
@@ -225,13 +230,13 @@ bool SessionPlayer::play(const Heard& heard) {
       const auto time = device->source.next_time();
       if (time && (!next || *time < *next->source.next_time())) next = device.get();
     }
-    const bool any_pose = next_pose_ < poses_.size();
-    if (!next && !any_pose) break;
-    const Timestamp pose_time = any_pose ? poses_[next_pose_].sample->time.host : Timestamp::max();
+    const bool any_seen = next_seen_ < seen_.size();
+    if (!next && !any_seen) break;
+    const Timestamp seen_time = any_seen ? seen_at() : Timestamp::max();
     const Timestamp device_time = next ? *next->source.next_time() : Timestamp::max();
-    if (!wait_until(std::min(pose_time, device_time))) continue;
-    if (any_pose && (!next || pose_time < device_time))
-      give(poses_[next_pose_++]);
+    if (!wait_until(std::min(seen_time, device_time))) continue;
+    if (any_seen && (!next || seen_time < device_time))
+      give(seen_[next_seen_++]);
     else
       give(*next, heard);
   }
@@ -278,9 +283,14 @@ void SessionPlayer::send(Device& device, std::span<const EvdevEvent> events) {
   }
 }
 
-void SessionPlayer::give(const ServedPose& pose) {
-  servers_->send(pose.tool, *pose.sample, patient_ ? patience : Duration(0));
-  played_[pose.stream].given += pose.sample->valid;
+void SessionPlayer::give(const Seen& seen) {
+  const Duration wait = patient_ ? patience : Duration(0);
+  const auto serve = [&](const auto& sample) {
+    servers_->send(seen.tool, sample, wait);
+    played_[seen.stream].given += sample.valid;
+  };
+  if (const auto* pose = std::get_if<PoseSample>(seen.sample)) serve(*pose);
+  if (const auto* position = std::get_if<PositionSample>(seen.sample)) serve(*position);
 }
 
 }  // namespace fude

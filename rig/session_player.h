@@ -1,5 +1,6 @@
-// A session given back as the devices it was recorded from: input devices made by the kernel, poses for
-// whoever connects over the network of this machine, and every device to a listener of this process.
+// A session given back as the devices it was recorded from: input devices made by the kernel, poses and
+// positions for whoever connects over the network of this machine, and every device to a listener of this
+// process.
 #pragma once
 
 #include <atomic>
@@ -22,7 +23,7 @@ struct PlayWish {
   double speed = 1;    // times the recorded pace; 0: as fast as it is taken, on a manual clock
   Duration from{0};    // after the session's first input
   std::string stream;  // the name of a device, or of a stream of it; empty: all
-  PoseServers::Ports ports;
+  PoseServers::Doors doors;
 };
 
 // An input device that others can read. Destroying `send` unplugs it.
@@ -37,9 +38,9 @@ using MakeLiveInput =
 Result<LiveInput> make_uinput(const DeviceDescription& device, std::span<const EvdevEvent> also);
 
 struct PlayedStream {
-  std::string name;           // of the device, or of the tracker's tool
+  std::string name;           // of the device, or of the tracker's tool or marker
   std::string outlet;         // where others find it: "/dev/input/event5"; empty: in this process alone
-  std::uint64_t given = 0;    // transfers, or poses
+  std::uint64_t given = 0;    // transfers, poses or positions
   std::uint64_t samples = 0;  // that the driver made of them
 };
 
@@ -58,7 +59,7 @@ class SessionPlayer {
   // plays.
   const std::vector<std::string>& notes() const { return notes_; }
   const std::vector<PlayedStream>& streams() const { return played_; }
-  const PoseServers* servers() const { return servers_.get(); }  // null without poses
+  const PoseServers* servers() const { return servers_.get(); }  // null without poses and positions
 
   // Lets in who connects until `duration` of the machine's own time has passed, `enough` says so, or stop()
   // (then false).
@@ -73,21 +74,21 @@ class SessionPlayer {
 
  private:
   struct Device;
-  struct ServedPose {
+  struct Seen {  // by a tracker: a pose or a position
     std::size_t tool = 0;
     std::size_t stream = 0;  // in played_
-    const PoseSample* sample = nullptr;
+    const Sample* sample = nullptr;
   };
   SessionPlayer(Session session, const PlayWish& wish, std::shared_ptr<Clock> clock,
                 MakeLiveInput make_input);
   void add_device(const RecordedDevice& recorded);
-  void add_poses(const std::optional<DeviceNumber>& device, const std::string& part,
-                 PoseServers::Ports ports);
+  void add_seen(const std::optional<DeviceNumber>& device, const std::string& part,
+                const PoseServers::Doors& doors);
   void make_input(Device& device);
   void lead_in(Device& device);
   void give(Device& device, const Heard& heard);
   void send(Device& device, std::span<const EvdevEvent> events);
-  void give(const ServedPose& pose);
+  void give(const Seen& seen);
   bool wait_until(Timestamp recorded);
 
   Session session_;
@@ -100,8 +101,8 @@ class SessionPlayer {
   std::vector<std::string> notes_;
   std::vector<PlayedStream> played_;
   std::vector<std::unique_ptr<Device>> devices_;
-  std::vector<ServedPose> poses_;
-  std::size_t next_pose_ = 0;
+  std::vector<Seen> seen_;
+  std::size_t next_seen_ = 0;
   std::unique_ptr<PoseServers> servers_;
 };
 

@@ -148,6 +148,13 @@ std::vector<std::byte> write_position(std::string_view device, std::uint64_t sta
   return write_message("POSITION", device, stamp, content);
 }
 
+std::vector<std::byte> write_position(std::string_view device, std::uint64_t stamp,
+                                      const Eigen::Vector3d& position_m) {
+  std::vector<std::byte> content;
+  for (int i = 0; i < 3; ++i) put_real(content, position_m[i] * 1000);
+  return write_message("POSITION", device, stamp, content);
+}
+
 std::vector<std::byte> write_status(std::string_view device, std::uint64_t stamp, const Status& status) {
   std::vector<std::byte> content;
   put_big_endian(content, status.code);

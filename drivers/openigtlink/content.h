@@ -54,6 +54,9 @@ std::vector<std::byte> write_transform(std::string_view device, std::uint64_t st
 std::vector<std::byte> write_tdata(std::string_view device, std::uint64_t stamp,
                                    std::span<const NamedPose> poses);
 std::vector<std::byte> write_position(std::string_view device, std::uint64_t stamp, const ToolPose& pose);
+// Without a turn.
+std::vector<std::byte> write_position(std::string_view device, std::uint64_t stamp,
+                                      const Eigen::Vector3d& position_m);
 std::vector<std::byte> write_status(std::string_view device, std::uint64_t stamp, const Status& status);
 
 }  // namespace fude::openigtlink

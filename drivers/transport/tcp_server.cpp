@@ -30,7 +30,7 @@ Result<std::unique_ptr<TcpServer>> TcpServer::open(Options options) {
   if (bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(socket.get(), 16) != 0 ||
       getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
     return failure(Fault::busy, "cannot listen on " + options.address + ":" + std::to_string(options.port) +
-                                    " (" + std::strerror(errno) + "); choose another port");
+                                    " (" + std::strerror(errno) + "); choose another address or port");
   const std::uint16_t port = ntohs(address.sin_port);
   return std::unique_ptr<TcpServer>(new TcpServer(std::move(options), std::move(socket), port));
 }
@@ -68,6 +68,11 @@ void TcpServer::attend() {
 void TcpServer::send(Bytes message) {
   attend();
   for (auto client = clients_.begin(); client != clients_.end();) drop(client, deliver(*client, message));
+}
+
+void TcpServer::announce(Bytes message) {
+  send(message);
+  append(options_.welcome, message);
 }
 
 std::size_t TcpServer::waiting_bytes() const {

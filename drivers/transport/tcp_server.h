@@ -22,7 +22,7 @@ class TcpServer {
     std::uint16_t port = 0;  // 0: the system picks a free one
     std::size_t most_clients = 16;
     std::size_t most_waiting_bytes = 1 << 20;  // of one client, beyond what the system holds for it
-    std::vector<std::byte> welcome;            // the first bytes to each
+    std::vector<std::byte> welcome;            // the first bytes to each client
   };
 
   struct Counts {
@@ -44,6 +44,9 @@ class TcpServer {
 
   // To every client, after attend().
   void send(Bytes message);
+
+  // To every client that is there, and to later ones after the welcome.
+  void announce(Bytes message);
 
   // What the client that is farthest behind has not taken yet, beyond what the system holds for it.
   std::size_t waiting_bytes() const;

@@ -48,6 +48,19 @@ TEST(Families, NoTwoRowsClaimOneDevice) {
     }
 }
 
+TEST(Families, ADeviceThatAPersonNamedIsKnownByThatName) {
+  for (const FamilyRow& row : family_rows()) {
+    const std::string transport = row.transport;
+    if (row.vendor != 0 || (transport != "serial" && transport != "network")) continue;
+    DeviceDescription device;
+    device.transport = transport;
+    device.name = name_at(row, "somewhere:1");
+    EXPECT_EQ(find_family(device), &row) << device.name;
+    device.name = "a stranger at " + device.name;
+    EXPECT_EQ(find_family(device), nullptr);
+  }
+}
+
 TEST(Families, RowsAreWhole) {
   const std::set<std::string> transports{"evdev", "hidraw", "usb", "serial", "network", "v4l2"};
   std::map<std::string, Family> families;

@@ -13,6 +13,12 @@
 #include <thread>
 
 #include "capture/session.h"
+#include "drivers/openigtlink/message.h"
+#include "drivers/openigtlink/openigtlink_decoder.h"
+#include "drivers/transport/tcp_source.h"
+#include "drivers/transport/waker.h"
+#include "rig/named_device.h"
+#include "rig/pose_relay.h"
 #include "rig/record_session.h"
 #include "tests/fakes/mock_tablet.h"
 
@@ -143,6 +149,43 @@ TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   EXPECT_EQ(session->pens[49].sample.x_counts, 50);
   EXPECT_EQ(session->receipts.at(0).dropped, 1);
   std::filesystem::remove(file);
+}
+
+// One program serves a pose over VRPN, the relay reads it as `fude serve` does, and a third program has it
+// over OpenIGTLink.
+TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
+  const Duration patience = std::chrono::seconds(20);
+  PoseServers tracker({.openigtlink = 0, .vrpn = 0});
+  PoseSample seen;
+  seen.tracker_from_tool = {Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(0.25, -0.5, 1)};
+  const std::size_t brush = tracker.add("brush");
+
+  PoseRelay::Wish wish{.doors = {.openigtlink = 0, .vrpn = 0}, .named = {}};
+  wish.named.push_back(*named_device("vrpn:127.0.0.1:" + std::to_string(tracker.vrpn()->port())));
+  const auto relay = PoseRelay::open(std::move(wish), [](const std::string&) {});
+  ASSERT_TRUE(relay) << relay.error().message;
+  const TcpServer& door = *(*relay)->servers().openigtlink();
+  auto reader = TcpSource::open({.port = door.port(), .fit = openigtlink::fit_message});
+  ASSERT_TRUE(reader);
+
+  OpenIgtLinkDecoder decoder;
+  Decoded out;
+  const Timestamp end = monotonic_now() + patience;
+  while (out.samples.empty() && monotonic_now() < end) {
+    seen.time.host = monotonic_now();
+    tracker.send(brush, seen);
+    (*relay)->attend();
+    const auto transfer = (*reader)->read(monotonic_now() + std::chrono::milliseconds(20));
+    ASSERT_TRUE(transfer);
+    if (*transfer) decoder.decode(**transfer, out);
+  }
+  ASSERT_FALSE(out.samples.empty());
+  const auto& given = std::get<PoseSample>(out.samples[0]);
+  EXPECT_EQ(given.tool, "brush");
+  EXPECT_LT((given.tracker_from_tool.translation - seen.tracker_from_tool.translation).norm(), 1e-7);
+  EXPECT_LT(given.tracker_from_tool.rotation.angularDistance(seen.tracker_from_tool.rotation), 1e-6);
+  ASSERT_EQ((*relay)->relayed().size(), 1u);
+  EXPECT_GE((*relay)->relayed()[0].given, 1u);
 }
 
 TEST_F(LiveDevices, WithoutATabletNoSessionIsMade) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 
 #include "capture/session.h"
 #include "rig/sheet_plan.h"
@@ -32,6 +33,36 @@ class ImportSession : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("fude-import-" + std::to_string(getpid()) + ".fude");
   ImportReceipt receipt_;
 };
+
+// Two trackers, their samples 0, 2, 4 … and 1, 3, 5 … ms, and actions before, between and after them.
+TEST_F(ImportSession, InputsOfAllDevicesAndActionsAreInTheOrderOfTheirTimes) {
+  using std::chrono::milliseconds;
+  const Timestamp began{std::chrono::seconds(9)};
+  std::vector<RawRecording> recordings(2);
+  for (int i = 0; i < 20; ++i) {
+    PositionSample sample;
+    sample.time.host = began + milliseconds(i);
+    recordings[static_cast<std::size_t>(i % 2)].samples.emplace_back(sample);
+  }
+  for (RawRecording& recording : recordings) recording.device.emplace().transport = "text";
+  std::vector<Action> actions;
+  for (const int ms : {-1, 7, 30}) actions.push_back({began + milliseconds(ms), DrySheet{}});
+  ASSERT_TRUE(write_recordings(recordings, actions, "test", session_, true));
+  const auto session = read_session(session_);
+  ASSERT_TRUE(session);
+  std::map<InputOrder, Timestamp> times;
+  for (const RecordedSample& s : session->samples) {
+    EXPECT_EQ(s.device, 1 + (std::get<PositionSample>(s.sample).time.host - began) / milliseconds(1) % 2);
+    times[s.order] = std::get<PositionSample>(s.sample).time.host;
+  }
+  for (const RecordedAction& a : session->actions) times[a.order] = a.action.time;
+  ASSERT_EQ(times.size(), 23U);
+  Timestamp last{};
+  for (const auto& [order, time] : times) {
+    EXPECT_GE(time, last);
+    last = time;
+  }
+}
 
 TEST_F(ImportSession, RawPensAndInkHaveAPlaceOnTheSheet) {
   REQUIRE_RECORDING("hid/Wacom_Cintiq_22HD_056a_00FA.hid");

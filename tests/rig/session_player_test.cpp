@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
 #include <tuple>
 
@@ -110,7 +111,7 @@ Result<LiveInput> no_uinput(const DeviceDescription&, std::span<const EvdevEvent
 PlayWish wish(double speed = 0) {
   PlayWish wish;
   wish.speed = speed;
-  wish.ports = {0, 0};
+  wish.doors = {.openigtlink = 0, .vrpn = 0};
   return wish;
 }
 
@@ -268,7 +269,8 @@ TEST(SessionPlayer, NothingToPlayIsSaid) {
   const auto opened = SessionPlayer::open({}, wish(), std::make_shared<ManualClock>(), no_uinput);
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().fault, Fault::not_found);
-  EXPECT_EQ(opened.error().message, "the session has nothing to play: no bytes of a device and no poses");
+  EXPECT_EQ(opened.error().message,
+            "the session has nothing to play: no bytes of a device, no poses and no positions");
 }
 
 TEST(SessionPlayer, WithoutUinputTheRestGoesOnAndOneLineSaysWhatMendsIt) {
@@ -292,7 +294,7 @@ TEST(SessionPlayer, APortThatIsTakenLeavesTheOther) {
   Session session;
   add_tracker(session);
   PlayWish at_taken = wish();
-  at_taken.ports.openigtlink = (*taken)->port();
+  at_taken.doors.openigtlink = (*taken)->port();
   const auto play = player(session, at_taken, no_uinput);
   EXPECT_EQ(play->servers()->openigtlink(), nullptr);
   EXPECT_NE(play->servers()->vrpn(), nullptr);
@@ -311,10 +313,78 @@ TEST(SessionPlayer, StopsWhileItWaits) {
   EXPECT_LT((*opened)->streams().at(0).given, std::uint64_t{frames});
 }
 
+TEST(SessionPlayer, AMarkerIsServedAsAPlaceWithoutATurn) {
+  Session session;
+  DeviceDescription device;
+  device.name = "Wand";
+  device.transport = "text";
+  session.devices.push_back({1, device});
+  PositionSample seen;
+  seen.time.host = began;
+  seen.marker = "tip";
+  seen.tracker_from_marker_m = {0.1, -0.2, 0.3};
+  PositionSample lost = seen;
+  lost.valid = false;
+  session.samples = {{1, lost, 1}, {1, seen, 2}};
+  const auto play = player(session, wish(), no_uinput);
+  auto igtl =
+      TcpSource::open({.port = play->servers()->openigtlink()->port(), .fit = openigtlink::fit_message});
+  auto vrpn = TcpSource::open({.port = play->servers()->vrpn()->port(), .fit = vrpn::fit_message});
+  ASSERT_TRUE(igtl && vrpn);
+  const auto both = [&] {
+    return play->servers()->openigtlink()->clients() + play->servers()->vrpn()->clients() == 2;
+  };
+  ASSERT_TRUE(play->stand(patience, both));
+  ASSERT_TRUE(play->play({}));
+  EXPECT_EQ(play->streams().at(0).given, 1u);
+  const auto first = [](ByteSource& source, Decoder& decoder) {
+    Decoded out;
+    while (out.samples.empty()) {
+      const auto transfer = source.read(monotonic_now() + patience);
+      if (!transfer || !*transfer) throw std::runtime_error("nothing was served");
+      decoder.decode(**transfer, out);
+    }
+    return out.samples.front();
+  };
+  OpenIgtLinkDecoder igtl_decoder;
+  const auto position = std::get<PositionSample>(first(**igtl, igtl_decoder));
+  EXPECT_EQ(position.marker, "tip");
+  EXPECT_LT((position.tracker_from_marker_m - seen.tracker_from_marker_m).norm(), 2e-8);
+  VrpnDecoder vrpn_decoder;
+  for (const Transfer& greeting : vrpn_decoder.greeting()) ASSERT_TRUE((*vrpn)->write(greeting));
+  const auto pose = std::get<PoseSample>(first(**vrpn, vrpn_decoder));
+  EXPECT_EQ(pose.tool, "tip");
+  EXPECT_EQ(pose.tracker_from_tool.translation, seen.tracker_from_marker_m);
+  EXPECT_EQ(pose.tracker_from_tool.rotation.w(), 1);
+}
+
 TEST(PoseServers, NamesAreCutAndKeptApart) {
-  EXPECT_EQ(
-      distinct_names({"probe", "probe", "a very long name of a tool", "a very long name of another"}, 20),
-      (std::vector<std::string>{"probe", "probe-2", "a very long name of ", "a very long name o-2"}));
+  PoseServers servers({.openigtlink = 0, .vrpn = 0});
+  for (const auto& [given, served] : std::vector<std::pair<const char*, const char*>>{
+           {"probe", "probe"},
+           {"probe", "probe-2"},
+           {"a very long name of a tool", "a very long name of "},
+           {"a very long name of another", "a very long name o-2"}})
+    EXPECT_EQ(servers.name(servers.add(given)), served);
+}
+
+TEST(PoseServers, AToolThatComesLateIsNamedToThoseWhoAreThere) {
+  PoseServers servers({.openigtlink = 0, .vrpn = 0});
+  auto source = TcpSource::open({.port = servers.vrpn()->port(), .fit = vrpn::fit_message});
+  ASSERT_TRUE(source);
+  VrpnDecoder decoder;
+  for (const Transfer& greeting : decoder.greeting()) ASSERT_TRUE((*source)->write(greeting));
+  while (servers.vrpn()->clients() < 1) servers.attend();
+  PoseSample sample;
+  sample.time.host = began;
+  servers.send(servers.add("late"), sample);
+  Decoded out;
+  while (out.samples.empty()) {
+    const auto transfer = (*source)->read(monotonic_now() + patience);
+    ASSERT_TRUE(transfer && *transfer);
+    decoder.decode(**transfer, out);
+  }
+  EXPECT_EQ(std::get<PoseSample>(out.samples[0]).tool, "late");
 }
 
 }  // namespace
