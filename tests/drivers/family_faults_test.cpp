@@ -65,13 +65,15 @@ class FamilyFaults : public testing::TestWithParam<int> {
     return decoder;
   }
 
+  std::size_t all_samples() const { return stream_.samples * count; }
+
   FamilyStream stream_;
 };
 
 TEST_P(FamilyFaults, WithoutAnyEachReportIsASample) {
   const auto decoder = greeted();
   const auto samples = decoded_all(*decoder, stream_.reports);
-  ASSERT_EQ(samples.size(), count);
+  ASSERT_EQ(samples.size(), all_samples());
   for (const Sample& sample : samples) EXPECT_FALSE(after_gap(sample));
   EXPECT_EQ(decoder->counts().lost, 0u);
   EXPECT_EQ(decoder->counts().malformed, 0u);
@@ -106,20 +108,21 @@ TEST_P(FamilyFaults, AReportCutShort) {
     reports[count / 2].payload.resize(kept);
     const auto decoder = greeted();
     const auto samples = decoded_all(*decoder, reports);
-    EXPECT_GE(samples.size(), count - 2) << kept;
-    EXPECT_LE(samples.size(), count) << kept;
+    EXPECT_GE(samples.size(), all_samples() - 2 * stream_.samples) << kept;
+    EXPECT_LE(samples.size(), all_samples()) << kept;
   }
 }
 
 TEST_P(FamilyFaults, GarbageInTheMiddle) {
+  if (stream_.from_kernel) return;
   auto reports = stream_.reports;
   auto& payload = reports[count / 2].payload;
   for (std::size_t i = 0; i < payload.size(); ++i)
     if (i != 2) payload[i] = static_cast<std::byte>(151 * i + 0xfd);  // a Falcon's message begins there
   const auto decoder = greeted();
   const auto samples = decoded_all(*decoder, reports);
-  EXPECT_GE(samples.size(), count - 2);
-  EXPECT_LT(samples.size(), count);
+  EXPECT_GE(samples.size(), all_samples() - 2 * stream_.samples);
+  EXPECT_LT(samples.size(), all_samples());
   EXPECT_GE(decoder->counts().malformed + decoder->counts().lost + decoder->counts().unknown, 1u);
 }
 
@@ -133,7 +136,7 @@ TEST_P(FamilyFaults, UnpluggedAtEveryByte) {
     auto part = second;
     part.payload.resize(cut);
     const auto before = decoded_all(*decoder, {first, part});
-    EXPECT_GE(before.size(), cut == second.payload.size() ? 2u : 1u) << cut;
+    EXPECT_GE(before.size(), stream_.samples * (cut == second.payload.size() ? 2 : 1)) << cut;
     decoded(*decoder, from_device(TransferKind::unplugged));
     decoded(*decoder, from_device(TransferKind::plugged));
     decoder->greeting();
@@ -154,22 +157,22 @@ TEST_P(FamilyFaults, NeighboursChangePlaces) {
 TEST_P(FamilyFaults, TimeRunsBackwards) {
   auto reports = stream_.reports;
   for (std::size_t i = count / 2; i < count; ++i) reports[i].time -= std::chrono::seconds(3);
-  EXPECT_EQ(decoded_all(*greeted(), reports).size(), count);
+  EXPECT_EQ(decoded_all(*greeted(), reports).size(), all_samples());
 }
 
 TEST_P(FamilyFaults, ALongSilence) {
   auto reports = stream_.reports;
   for (std::size_t i = count / 2; i < count; ++i) reports[i].time += std::chrono::minutes(3);
-  EXPECT_EQ(decoded_all(*greeted(), reports).size(), count);
+  EXPECT_EQ(decoded_all(*greeted(), reports).size(), all_samples());
 }
 
 std::string family_name(const testing::TestParamInfo<int>& info) {
   std::string name = family_streams(1).at(static_cast<std::size_t>(info.param)).name;
-  std::erase_if(name, [](char c) { return c == ' '; });
+  std::erase_if(name, [](char c) { return c == ' ' || c == '-'; });
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FamilyFaults, testing::Range(0, 6), family_name);
+INSTANTIATE_TEST_SUITE_P(All, FamilyFaults, testing::Range(0, 12), family_name);
 
 }  // namespace
 }  // namespace fude

@@ -1,5 +1,7 @@
 #include "tests/fakes/family_streams.h"
 
+#include <linux/input-event-codes.h>
+
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -8,9 +10,17 @@
 #include "drivers/falcon/falcon_decoder.h"
 #include "drivers/falcon/ftdi.h"
 #include "drivers/handle/handle_decoder.h"
+#include "drivers/joycon/joycon_decoder.h"
+#include "drivers/openigtlink/content.h"
+#include "drivers/openigtlink/openigtlink_decoder.h"
+#include "drivers/p5glove/p5glove_decoder.h"
 #include "drivers/polhemus/polhemus_decoder.h"
 #include "drivers/spacemouse/spacemouse_decoder.h"
+#include "drivers/tablet/tablet_decoder.h"
+#include "drivers/touch/touch_decoder.h"
 #include "drivers/ultrasonic/ultrasonic_decoder.h"
+#include "drivers/vrpn/message.h"
+#include "drivers/vrpn/vrpn_decoder.h"
 #include "tests/fakes/transfers.h"
 
 namespace fude {
@@ -30,6 +40,44 @@ std::vector<Transfer> repeated(unsigned count, TransferKind kind, std::uint8_t e
     all.back().endpoint = endpoint;
   }
   return all;
+}
+
+Pose<Tracker, Tool> pose_at(unsigned i) {
+  const double half_turn = 0.01 * i;
+  return {Eigen::Quaterniond(std::cos(half_turn), 0, 0, std::sin(half_turn)),
+          Eigen::Vector3d(0.001 * i, -0.2, 0.3)};
+}
+
+DeviceDescription tablet() {
+  DeviceDescription device;
+  device.transport = "evdev";
+  device.keys = {BTN_TOOL_PEN, BTN_TOUCH};
+  device.axes = {{.code = ABS_X, .maximum = 10000},
+                 {.code = ABS_Y, .maximum = 10000},
+                 {.code = ABS_PRESSURE, .maximum = 1023}};
+  return device;
+}
+
+DeviceDescription touch_surface() {
+  DeviceDescription device;
+  device.transport = "evdev";
+  device.keys = {BTN_TOUCH};
+  device.axes = {{.code = ABS_MT_SLOT, .maximum = 9},
+                 {.code = ABS_MT_POSITION_X, .maximum = 4000},
+                 {.code = ABS_MT_POSITION_Y, .maximum = 3000},
+                 {.code = ABS_MT_TRACKING_ID, .maximum = 65535}};
+  return device;
+}
+
+// Its tower's calibration: no correction, heads 7.9 inches apart.
+std::vector<Transfer> glove_tower() {
+  std::vector<Transfer> answers{from_device(TransferKind::hid_feature, from_hex("06 00 00 00 00 4f"))};
+  for (const unsigned kind : {0u, 1u}) {
+    auto lights = octets({12, kind});
+    lights.resize(62);
+    answers.push_back(from_device(TransferKind::hid_feature, std::move(lights)));
+  }
+  return answers;
 }
 
 }  // namespace
@@ -94,6 +142,59 @@ std::vector<std::byte> ultrasonic_pulse(unsigned i) {
   return ultrasonic::framed(ultrasonic::write_pulse(pulse));
 }
 
+std::vector<std::byte> joycon_report(unsigned i) {
+  auto report = octets({0x30, 3 * i & 0xff, 0x91, 0x08, 0x01, 0x40, 0, 0, 0, 0, 0, 0, 0xa0});
+  for (unsigned reading = 0; reading < 3; ++reading)
+    for (const int value : {int{small(i, 3)}, 4096, int{small(i, 5)}, 100, 200, int{small(i, 7)}})
+      put_little_endian(report, static_cast<std::uint16_t>(value));
+  return report;
+}
+
+std::vector<std::byte> glove_report(unsigned i) {
+  std::vector<bool> bits;
+  const auto put = [&bits](unsigned value, int width) {
+    for (int bit = width - 1; bit >= 0; --bit) bits.push_back(value >> bit & 1);
+  };
+  constexpr unsigned unseen = 15;
+  put(1, 8);
+  for (const unsigned bend : {10u, 20u, 30u, 40u, i % 64}) put(bend, 6);
+  put(0, 2);
+  put(5, 4);
+  for (const unsigned light : {2u, unseen, unseen, unseen}) put(light, 4);
+  for (const unsigned tangent : {20u, 10u, i}) put(tangent, 10);
+  std::vector<std::byte> report(p5glove::report_length);
+  for (std::size_t bit = 0; bit < bits.size(); ++bit)
+    if (bits[bit]) report[bit / 8] |= static_cast<std::byte>(0x80 >> bit % 8);
+  return report;
+}
+
+std::vector<std::byte> pen_frame(unsigned i) {
+  std::vector<EvdevEvent> events;
+  if (i == 0) events = {{EV_KEY, BTN_TOOL_PEN, 1}, {EV_KEY, BTN_TOUCH, 1}};
+  events.push_back({EV_ABS, ABS_X, static_cast<std::int32_t>(100 + i)});
+  events.push_back({EV_ABS, ABS_PRESSURE, static_cast<std::int32_t>(1 + i)});
+  events.push_back({EV_SYN, SYN_REPORT, 0});
+  return pack_events(events);
+}
+
+std::vector<std::byte> touch_frame(unsigned i) {
+  std::vector<EvdevEvent> events;
+  if (i == 0) events = {{EV_ABS, ABS_MT_SLOT, 0}, {EV_ABS, ABS_MT_TRACKING_ID, 7}};
+  events.push_back({EV_ABS, ABS_MT_POSITION_X, static_cast<std::int32_t>(100 + i)});
+  events.push_back({EV_ABS, ABS_MT_POSITION_Y, static_cast<std::int32_t>(200 + i)});
+  events.push_back({EV_SYN, SYN_REPORT, 0});
+  return pack_events(events);
+}
+
+std::vector<std::byte> transform_message(unsigned i) {
+  return openigtlink::write_transform("Brush", openigtlink::stamp_of_us(1000 * (i + 1)), pose_at(i));
+}
+
+std::vector<std::byte> pos_quat_message(unsigned i) {
+  return vrpn::write_message(
+      {.time_us = 1000 * (i + 1), .sender = 0, .type = 0, .body = vrpn::write_pose({0, pose_at(i)})});
+}
+
 std::vector<FamilyStream> family_streams(unsigned count) {
   const auto behind_status = [](unsigned i) {
     auto packet = octets({0x01, 0x60});
@@ -131,6 +232,34 @@ std::vector<FamilyStream> family_streams(unsigned count) {
                  {},
                  repeated(count, TransferKind::serial, 0, ultrasonic_pulse),
                  true});
+  all.push_back({.name = "Joy-Con",
+                 .decoder = [] { return std::make_unique<JoyconDecoder>(); },
+                 .reports = repeated(count, TransferKind::hid_report, 0, joycon_report),
+                 .samples = 3});
+  all.push_back({.name = "P5 Glove",
+                 .decoder = [] { return std::make_unique<P5GloveDecoder>(); },
+                 .introduction = glove_tower(),
+                 .reports = repeated(count, TransferKind::hid_report, 0, glove_report)});
+  all.push_back({.name = "pen tablet",
+                 .decoder = [] { return std::make_unique<TabletDecoder>(tablet()); },
+                 .reports = repeated(count, TransferKind::evdev_frame, 0, pen_frame),
+                 .from_kernel = true});
+  all.push_back({.name = "touch surface",
+                 .decoder = [] { return std::make_unique<TouchDecoder>(touch_surface()); },
+                 .reports = repeated(count, TransferKind::evdev_frame, 0, touch_frame),
+                 .from_kernel = true});
+  all.push_back({.name = "OpenIGTLink",
+                 .decoder = [] { return std::make_unique<OpenIgtLinkDecoder>(); },
+                 .reports = repeated(count, TransferKind::message, 0, transform_message)});
+  all.push_back(
+      {.name = "VRPN",
+       .decoder = [] { return std::make_unique<VrpnDecoder>(); },
+       .introduction = {from_device(TransferKind::message, vrpn::write_cookie()),
+                        from_device(TransferKind::message,
+                                    vrpn::write_description(vrpn::sender_description, 0, "Brush")),
+                        from_device(TransferKind::message,
+                                    vrpn::write_description(vrpn::type_description, 0, vrpn::pose_type))},
+       .reports = repeated(count, TransferKind::message, 0, pos_quat_message)});
   return all;
 }
 

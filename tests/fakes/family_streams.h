@@ -23,12 +23,25 @@ std::vector<std::byte> falcon_answer(unsigned i);
 // fude's ultrasonic board: pulse number `i`, framed.
 std::vector<std::byte> ultrasonic_pulse(unsigned i);
 
+// A Joy-Con's full report: three readings of gravity and a turn. Byte 1 is its timer.
+std::vector<std::byte> joycon_report(unsigned i);
+// P5 Glove: bends that change, one light that moves.
+std::vector<std::byte> glove_report(unsigned i);
+// Frames of the kernel: a pen that draws, a finger that slides; both are there from frame 0 on.
+std::vector<std::byte> pen_frame(unsigned i);
+std::vector<std::byte> touch_frame(unsigned i);
+// A TRANSFORM of OpenIGTLink; a Pos_Quat of VRPN from sender 0 and of type 0.
+std::vector<std::byte> transform_message(unsigned i);
+std::vector<std::byte> pos_quat_message(unsigned i);
+
 struct FamilyStream {
   std::string name;
   std::function<std::unique_ptr<Decoder>()> decoder;
   std::vector<Transfer> introduction;  // answers to the greeting, without which the driver waits
-  std::vector<Transfer> reports;       // four milliseconds apart; each gives one sample
-  bool in_bytes = false;  // reports are bytes of a stream: neither beginning nor end means anything
+  std::vector<Transfer> reports;       // four milliseconds apart
+  bool in_bytes = false;     // reports are bytes of a stream: neither beginning nor end means anything
+  unsigned samples = 1;      // that each report gives
+  bool from_kernel = false;  // which may lose frames but writes no garbage
 };
 
 // Of all of the above.
