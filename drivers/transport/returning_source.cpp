@@ -21,15 +21,19 @@ Result<std::optional<Transfer>> ReturningSource::read(std::optional<Timestamp> d
     auto transfer = source->read(deadline);
     if (transfer || transfer.error().fault != Fault::device_gone) return transfer;
     set_present(nullptr);
+    next_look_ = {};
   }
   for (;;) {
-    if (auto source = open_()) {
-      set_present(std::move(*source));
-      return Transfer{monotonic_now(), StampedBy::arrival, Direction::from_device, TransferKind::plugged, {}};
+    if (monotonic_now() >= next_look_) {
+      if (auto source = open_()) {
+        set_present(std::move(*source));
+        return Transfer{
+            monotonic_now(), StampedBy::arrival, Direction::from_device, TransferKind::plugged, {}};
+      }
+      next_look_ = monotonic_now() + pause_;
     }
-    const Timestamp next = monotonic_now() + pause_;
-    const bool last = deadline && *deadline <= next;
-    if (waker_.wait(-1, last ? *deadline : next).woken || last) return std::nullopt;
+    const bool last = deadline && *deadline <= next_look_;
+    if (waker_.wait(-1, last ? *deadline : next_look_).woken || last) return std::nullopt;
   }
 }
 

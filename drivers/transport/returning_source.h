@@ -16,7 +16,7 @@ class ReturningSource final : public ByteSource {
   // Looks for the device by its identity and opens it; fails while it is not there.
   using Open = std::function<Result<std::unique_ptr<ByteSource>>()>;
 
-  // Looks at once, and again each `pause` while the device is away.
+  // Looks at once, and again each `pause` while the device is away, however often it is read.
   explicit ReturningSource(Open open, Duration pause = std::chrono::milliseconds(100));
 
   // What the device gives. After its `unplugged` it waits for the device's return, which gives `plugged`, so
@@ -33,6 +33,7 @@ class ReturningSource final : public ByteSource {
 
   Open open_;
   Duration pause_;
+  Timestamp next_look_{};
   Waker waker_;
   mutable std::mutex mutex_;
   std::shared_ptr<ByteSource> source_;

@@ -5,6 +5,7 @@
 #include "drivers/falcon/falcon_decoder.h"
 #include "drivers/falcon/ftdi.h"
 #include "drivers/falcon/kinematics.h"
+#include "tests/fakes/falcon_arm.h"
 #include "tests/fakes/sound_sample.h"
 #include "tests/fakes/transfers.h"
 
@@ -202,38 +203,6 @@ TEST(Falcon, AMotorsLimitShortensTheForceAndKeepsItsDirection) {
   EXPECT_EQ(force_message(place, {std::nan(""), 0, 0}, green).motors, (std::array<std::int16_t, 3>{}));
   EXPECT_EQ(force_message({0, 0, 9}, {1, 0, 0}, green).motors, (std::array<std::int16_t, 3>{}));
 }
-
-// A Falcon after power-on, as the documents describe it.
-class PowerOn {
- public:
-  explicit PowerOn(std::vector<std::byte> image) : image_(std::move(image)) {}
-
-  // What it sends back for what it got, without the chip's status.
-  std::vector<std::byte> hear(const Transfer& sent) {
-    if (sent.kind != TransferKind::usb_bulk) return {};
-    if (received_ == image_)
-      return read_to_arm(sent.payload) ? write_from_arm({.homed = 7}) : std::vector<std::byte>{};
-    if (sent.payload == octets({0x0a, 0x43, 0x0d})) return from_hex("00 0a 44 2c 0d");
-    if (sent.payload == octets({0x41})) {
-      receiving_ = true;
-      received_.clear();
-      return octets({0x41});
-    }
-    if (!receiving_) return {};
-    append(received_, sent.payload);
-    auto echo = sent.payload;
-    if (spoil_ > 0 && --spoil_ == 0) echo[0] ^= std::byte{1};
-    return echo;
-  }
-  void spoil(int block) { spoil_ = block; }
-  bool loaded() const { return received_ == image_; }
-
- private:
-  std::vector<std::byte> image_;
-  std::vector<std::byte> received_;
-  bool receiving_ = false;
-  int spoil_ = 0;
-};
 
 std::vector<std::byte> image() {
   std::vector<std::byte> bytes(5000);

@@ -1,13 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <random>
 
 #include "drivers/falcon/force_guard.h"
 #include "drivers/falcon/ftdi.h"
 #include "drivers/falcon/haptic_loop.h"
+#include "tests/fakes/falcon_arm.h"
 #include "tests/fakes/transfers.h"
 
 namespace fude {
@@ -102,77 +103,40 @@ TEST(ForceGuard, HoldsItsPromisesWhateverComes) {
   }
 }
 
-// A clock that only the loop moves, by sleeping; it may oversleep.
-class ManualClock final : public LoopClock {
- public:
-  Timestamp now() override { return now_; }
-  void sleep_until(Timestamp time) override {
-    now_ = std::max(now_, time) + std::exchange(oversleep_, Duration(0));
-  }
-  void oversleep(Duration by) { oversleep_ = by; }
-
- private:
-  Timestamp now_ = at_us(1'000'000);
-  Duration oversleep_{0};
-};
-
-// An arm that answers each message a period later, from where the test says it is.
-class FakeArm final : public ByteSource {
- public:
-  explicit FakeArm(ManualClock& clock) : clock_(clock) {}
-
-  Result<std::optional<Transfer>> read(std::optional<Timestamp>) override {
-    if (gone) return failure(Fault::device_gone, "gone");
-    if (answers_.empty() || muted) return std::nullopt;
-    Transfer transfer = std::move(answers_.front());
-    answers_.pop_front();
-    transfer.time = clock_.now();
-    return std::optional(transfer);
-  }
-  Result<void> write(const Transfer& transfer) override {
-    const auto message = read_to_arm(transfer.payload);
-    if (!message) return {};
-    sent.push_back(*message);
-    auto bytes = octets({0x01, 0x60});
-    append(bytes, write_from_arm(state));
-    answers_.push_back(from_device(TransferKind::usb_bulk, bytes));
-    return {};
-  }
-  void wake() override {}
-
-  FromArm state{.homed = 7};
-  bool muted = false;
-  bool gone = false;
-  std::vector<ToArm> sent;
-
- private:
-  ManualClock& clock_;
-  std::deque<Transfer> answers_;
-};
-
 struct Rig {
   ManualClock clock;
-  FakeArm arm{clock};
+  FalconArm arm{clock};
   FalconDecoder decoder{{}, false};
   std::optional<Vector3d> wish = Vector3d(0, 2, 0);
   HapticLoop loop{arm, clock, decoder, [this](const HapticSample&) { return wish; }};
 
-  Rig() {
-    for (const Transfer& t : decoder.greeting()) EXPECT_TRUE(arm.write(t));
-  }
   void run(int periods) {
     for (int i = 0; i < periods; ++i) EXPECT_TRUE(loop.step());
   }
-  bool forceless() const { return arm.sent.back().motors == std::array<std::int16_t, 3>{}; }
+  bool forceless() const { return arm.sent.back().message.motors == std::array<std::int16_t, 3>{}; }
+  bool never_a_force() const {
+    return std::ranges::all_of(arm.sent, [](const FalconArm::Sent& sent) {
+      return sent.message.motors == std::array<std::int16_t, 3>{};
+    });
+  }
 };
+
+// The message that would be read at that time.
+Transfer said_at(const FromArm& state, Timestamp time) {
+  auto bytes = octets({0x01, 0x60});
+  append(bytes, write_from_arm(state));
+  Transfer transfer = from_device(TransferKind::usb_bulk, bytes);
+  transfer.time = time;
+  return transfer;
+}
 
 TEST(HapticLoop, APeriodIsOneSampleAndOneMessage) {
   Rig rig;
   rig.run(1000);
-  EXPECT_EQ(rig.loop.counts().periods, 1000u);
+  EXPECT_EQ(rig.loop.counts().pace.periods, 1000u);
+  EXPECT_EQ(rig.loop.counts().pace.late, 0u);
   EXPECT_EQ(rig.loop.counts().samples, 1000u);
-  EXPECT_EQ(rig.loop.counts().late, 0u);
-  EXPECT_EQ(rig.arm.sent.size(), 1001u);
+  EXPECT_EQ(rig.arm.sent.size(), 1001u);  // and the greeting
   EXPECT_EQ(rig.clock.now(), at_us(1'000'000 + 999'000));
   EXPECT_FALSE(rig.forceless());
 }
@@ -181,7 +145,7 @@ TEST(HapticLoop, AnArmThatIsNotHomedFeelsNothing) {
   Rig rig;
   rig.arm.state.homed = 5;
   rig.run(50);
-  for (const ToArm& message : rig.arm.sent) EXPECT_EQ(message.motors, (std::array<std::int16_t, 3>{}));
+  EXPECT_TRUE(rig.never_a_force());
 }
 
 TEST(HapticLoop, WhenNobodyRenewsTheForceItIsGoneInTwentyMilliseconds) {
@@ -205,7 +169,55 @@ TEST(HapticLoop, AWishThatIsNoNumberIsNoForce) {
   Rig rig;
   rig.wish = Vector3d(std::nan(""), 0, 0);
   rig.run(50);
-  for (const ToArm& message : rig.arm.sent) EXPECT_EQ(message.motors, (std::array<std::int16_t, 3>{}));
+  EXPECT_TRUE(rig.never_a_force());
+}
+
+TEST(HapticLoop, GarbageWithoutEndDoesNotKeepTheForceFromFading) {
+  Rig rig;
+  rig.run(50);
+  rig.arm.flooding = true;
+  rig.run(21);
+  EXPECT_TRUE(rig.forceless());
+  EXPECT_GT(rig.decoder.counts().malformed, 0u);
+}
+
+TEST(HapticLoop, ForceIsAsFreshAsTheSampleThatItAnswers) {
+  Rig rig;
+  rig.run(50);
+  rig.arm.muted = true;
+  for (int i = 0; i < 30; ++i)
+    rig.arm.instead.push_back(said_at({.homed = 7}, rig.clock.now() - std::chrono::milliseconds(20)));
+  rig.run(21);
+  EXPECT_TRUE(rig.forceless());
+}
+
+TEST(HapticLoop, ASampleFromTheFutureHoldsNoForce) {
+  Rig rig;
+  rig.run(50);
+  rig.arm.muted = true;
+  rig.arm.instead.push_back(said_at({.homed = 7}, rig.clock.now() + std::chrono::hours(1)));
+  rig.run(1);
+  rig.wish.reset();
+  rig.run(21);
+  EXPECT_TRUE(rig.forceless());
+}
+
+TEST(HapticLoop, WhatTheArmDoesNotTakeLetsGoOfTheForceAndEndsNothing) {
+  Rig rig;
+  std::uint64_t heard = 0;
+  HapticLoop loop(
+      rig.arm, rig.clock, rig.decoder, [&](const HapticSample&) { return rig.wish; },
+      [&](const Transfer& t, const Decoded&) { heard += t.direction == Direction::to_device; });
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(loop.step());
+  rig.arm.full = true;
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(loop.step());
+  EXPECT_EQ(loop.counts().unsent, 10u);
+  const auto taken = heard;
+  EXPECT_EQ(taken, rig.arm.sent.size() + 4);  // and the chip's setting up
+  rig.arm.full = false;
+  rig.arm.muted = true;
+  ASSERT_TRUE(loop.step());
+  EXPECT_TRUE(rig.forceless());
 }
 
 TEST(HapticLoop, ALatePeriodIsCountedAndNotMadeUpFor) {
@@ -213,8 +225,8 @@ TEST(HapticLoop, ALatePeriodIsCountedAndNotMadeUpFor) {
   rig.run(10);
   rig.clock.oversleep(std::chrono::microseconds(7300));
   rig.run(10);
-  EXPECT_EQ(rig.loop.counts().late, 1u);
-  EXPECT_EQ(rig.loop.counts().periods, 20u);
+  EXPECT_EQ(rig.loop.counts().pace.late, 1u);
+  EXPECT_EQ(rig.loop.counts().pace.periods, 20u);
 }
 
 TEST(HapticLoop, AnArmThatIsGoneEndsTheStep) {
@@ -222,6 +234,23 @@ TEST(HapticLoop, AnArmThatIsGoneEndsTheStep) {
   rig.run(5);
   rig.arm.gone = true;
   EXPECT_EQ(rig.loop.step().error().fault, Fault::device_gone);
+}
+
+TEST(HapticLoop, AnArmThatComesBackIsGreetedAgain) {
+  Rig rig;
+  rig.run(50);
+  const auto before = rig.arm.sent.size();
+  rig.arm.muted = true;
+  rig.arm.instead.push_back(from_device(TransferKind::unplugged));
+  rig.run(10);
+  EXPECT_EQ(rig.arm.sent.size(), before);
+  rig.arm.muted = false;
+  rig.arm.instead.push_back(from_device(TransferKind::plugged));
+  rig.wish.reset();
+  rig.run(2);
+  EXPECT_GT(rig.arm.sent.size(), before);
+  EXPECT_TRUE(rig.forceless());
+  EXPECT_EQ(rig.decoder.state(), FalconDecoder::State::running);
 }
 
 }  // namespace
