@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "drivers/camera/camera_decoder.h"
+#include "drivers/falcon/falcon_decoder.h"
 #include "drivers/transport/evdev_source.h"
 #include "drivers/transport/hidraw_source.h"
 #include "drivers/transport/serial_source.h"
 #include "drivers/transport/usb_hid_source.h"
 #include "drivers/transport/usb_source.h"
+#include "rig/falcon_firmware.h"
 
 namespace fude {
 namespace {
@@ -58,6 +60,11 @@ Result<std::vector<AttachedDevice>> attached_devices() {
   }
   std::ranges::sort(devices, {}, &AttachedDevice::node);
   return devices;
+}
+
+std::unique_ptr<Decoder> open_driver(const FamilyRow& family, const DeviceDescription& device) {
+  if (family.family == Family::falcon) return std::make_unique<FalconDecoder>(falcon_firmware(), false);
+  return open_decoder(family, device);
 }
 
 Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder,

@@ -29,6 +29,10 @@ std::optional<AttachedDevice> attached(const DeviceNode& node);
 // Ordered by node. Errors: unsupported where udev does not run.
 Result<std::vector<AttachedDevice>> attached_devices();
 
+// A device's driver as the rig runs it: a Falcon's has the user's firmware, and does not poll, for a haptic
+// loop speaks.
+std::unique_ptr<Decoder> open_driver(const FamilyRow& family, const DeviceDescription& device);
+
 // `decoder`: the device's own; a camera's is told which source it watches. `camera` is what a camera is asked
 // for; one that has not the format is opened in one that it has. Errors: those of the transport's open().
 Result<std::unique_ptr<ByteSource>> open_source(const AttachedDevice& device, Decoder& decoder,

@@ -1,4 +1,4 @@
-// One device, read on a thread of its own: what it sends is decoded, and what its driver answers is sent.
+// One device, read on a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -12,20 +12,29 @@
 
 namespace fude {
 
-class DeviceReader {
+class Reader {
  public:
-  // Each transfer of either direction in its order, with the samples that the driver made of it.
+  // Each transfer of either direction in its order, with the samples that the driver made of it; called on
+  // the reading thread only.
   using Heard = std::function<void(const Transfer&, std::span<const Sample>)>;
 
-  // `heard` is called on the reading thread only. The driver's greeting is sent first, and again whenever
-  // the source says that the device is back. `decoder` must outlive the reader.
+  virtual ~Reader() = default;
+
+  // Whether the device had gone by itself.
+  virtual bool stop() = 0;
+};
+
+// Waits for what the device sends, decodes it, and sends what its driver answers.
+class DeviceReader final : public Reader {
+ public:
+  // The driver's greeting is sent first, and again whenever the source says that the device is back.
+  // `decoder` must outlive the reader.
   DeviceReader(std::unique_ptr<ByteSource> source, Decoder& decoder, Heard heard);
-  ~DeviceReader();  // stops
+  ~DeviceReader() override;  // stops
   DeviceReader(const DeviceReader&) = delete;
   DeviceReader& operator=(const DeviceReader&) = delete;
 
-  // Whether the device had gone by itself.
-  bool stop();
+  bool stop() override;
 
  private:
   void serve();

@@ -5,6 +5,7 @@
 
 #include "drivers/transport/returning_source.h"
 #include "drivers/transport/waker.h"
+#include "rig/haptic_reader.h"
 
 namespace fude {
 namespace {
@@ -67,7 +68,7 @@ void Devices::plugged(const AttachedDevice& found) {
            s.description.kind == found.description.kind;
   });
   const bool back = slot != slots_.end();
-  auto decoder = back ? std::move(slot->decoder) : open_decoder(*found.family, found.description);
+  auto decoder = back ? std::move(slot->decoder) : open_driver(*found.family, found.description);
   auto source = open_source(found, *decoder, wish_.camera);
   if (back) slot->decoder = std::move(decoder);
   if (!source) {
@@ -94,7 +95,7 @@ void Devices::plugged(const AttachedDevice& found) {
 }
 
 void Devices::add(const NamedDevice& named) {
-  slots_.push_back({named.description, {}, open_decoder(*named.family, named.description), nullptr});
+  slots_.push_back({named.description, {}, open_driver(*named.family, named.description), nullptr});
   const std::size_t number = slots_.size() - 1;
   listener_.appeared(number, named.description);
   // Tried again and again, told once an absence.
@@ -108,11 +109,14 @@ void Devices::add(const NamedDevice& named) {
 
 void Devices::read(std::size_t number, std::unique_ptr<ByteSource> source) {
   Slot& slot = slots_[number];
-  slot.reader = std::make_unique<DeviceReader>(
-      std::move(source), *slot.decoder,
-      [this, number](const Transfer& transfer, std::span<const Sample> samples) {
-        listener_.heard(number, transfer, samples);
-      });
+  const auto heard = [this, number](const Transfer& transfer, std::span<const Sample> samples) {
+    listener_.heard(number, transfer, samples);
+  };
+  if (auto* arm = dynamic_cast<FalconDecoder*>(slot.decoder.get()))
+    slot.reader = std::make_unique<HapticReader>(std::move(source), *arm, heard,
+                                                 HapticWish{.feel = {}, .refused = listener_.refused});
+  else
+    slot.reader = std::make_unique<DeviceReader>(std::move(source), *slot.decoder, heard);
 }
 
 void Devices::unplugged(const std::filesystem::path& node) {

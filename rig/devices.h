@@ -65,7 +65,7 @@ class Devices {
     DeviceDescription description;
     std::filesystem::path node;  // empty while the device is away
     std::unique_ptr<Decoder> decoder;
-    std::unique_ptr<DeviceReader> reader;
+    std::unique_ptr<Reader> reader;
   };
 
   Devices(DeviceListener listener, DevicesWish wish, std::unique_ptr<NodeMonitor> monitor);

@@ -1,13 +1,12 @@
 #include "rig/live_painting.h"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <new>
 #include <stdexcept>
 #include <utility>
+
+#include "rig/precedence.h"
 
 namespace fude {
 namespace {
@@ -37,14 +36,6 @@ CellRect united(const CellRect& a, const CellRect& b) {
 
 Timestamp now() {
   return Timestamp(std::chrono::duration_cast<Duration>(LiveClock::now().time_since_epoch()));
-}
-
-// The ink's threads may keep every processor busy, and some kernels let them go on until the next tick,
-// 4 ms away. Where the user may ask for it (`ulimit -r`, as for sound), the brush comes first: it runs for
-// less than a millisecond at a time.
-void ask_for_precedence() {
-  const sched_param lowest{.sched_priority = 1};
-  (void)pthread_setschedparam(pthread_self(), SCHED_RR | SCHED_RESET_ON_FORK, &lowest);
 }
 
 double milliseconds(Duration d) { return seconds(d) * 1e3; }
@@ -168,7 +159,7 @@ std::optional<Error> LivePainting::failed() const {
 }
 
 void LivePainting::paint() {
-  ask_for_precedence();
+  ask_for(Precedence::brush);
   const double step_s = history_.painting().step_s();
   // The memory of the first snapshot and the first pictures is touched before the clock starts.
   history_.painting().look_later([this](const Ink& ink) { look(ink); });

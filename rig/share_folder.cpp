@@ -10,18 +10,21 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> folders() {
   std::vector<fs::path> found;
-  const char* data_home = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  if (data_home && *data_home)
-    found.push_back(fs::path(data_home) / "fude");
-  else if (home && *home)
-    found.push_back(fs::path(home) / ".local/share/fude");
+  if (const fs::path own = user_folder(); !own.empty()) found.push_back(own);
   if (const char* own = std::getenv("FUDE_SHARE"); own && *own) found.emplace_back(own);
   found.emplace_back(FUDE_SHARE_FOLDER);
   return found;
 }
 
 }  // namespace
+
+fs::path user_folder() {
+  const char* data_home = std::getenv("XDG_DATA_HOME");
+  if (data_home && *data_home) return fs::path(data_home) / "fude";
+  const char* home = std::getenv("HOME");
+  if (home && *home) return fs::path(home) / ".local/share/fude";
+  return {};
+}
 
 Result<fs::path> find_shared(const std::string& kind, const std::string& name, const std::string& extension) {
   std::error_code ignored;

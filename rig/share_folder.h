@@ -9,7 +9,10 @@
 
 namespace fude {
 
-// Looks for `kind`/`name` (kind: "brushes", "papers", "sessions") in $XDG_DATA_HOME/fude, then in
+// $XDG_DATA_HOME/fude, or where that is not set ~/.local/share/fude; empty without a home.
+std::filesystem::path user_folder();
+
+// Looks for `kind`/`name` (kind: "brushes", "papers", "sessions") in user_folder(), then in
 // $FUDE_SHARE, then where fude was built from. A name that is a path to an existing file is that file.
 // Errors: not_found, listing the names there are; usage for a name that would leave the folder.
 Result<std::filesystem::path> find_shared(const std::string& kind, const std::string& name,
