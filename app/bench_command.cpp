@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/painting_options.h"
+#include "rig/bench_haptic.h"
 #include "rig/bench_pipeline.h"
 #include "rig/bench_record.h"
 #include "sim/brush/bench_brush.h"
@@ -135,6 +136,42 @@ void add_pipeline(CLI::App& bench, int& status) {
   });
 }
 
+void add_haptic(CLI::App& bench, int& status) {
+  struct Options {
+    PaintingOptions painting;
+    double seconds = 10;
+    bool in_turn = false, json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = bench.add_subcommand(
+      "haptic", "an arm's loop of 1 kHz against a bare timer, while 512 x 512 wet cells are stepped");
+  options->painting.add_to(*command);
+  command->add_option("--seconds", options->seconds, "how long each")->check(CLI::Range(0.5, 600.0));
+  command->add_flag("--in-turn", options->in_turn, "loop and timer by half seconds, not both at once");
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options, &status] {
+    const auto settings = options->painting.settings();
+    const auto b = settings ? bench_haptic(settings->painting, options->seconds,
+                                           options->in_turn ? HapticTurns::in_turn : HapticTurns::together)
+                            : Result<HapticBench>(tl::unexpected(settings.error()));
+    if (!b) {
+      status = report(b.error());
+      return;
+    }
+    const auto pace = [](const falcon::Pace::Counts& counts) {
+      return Json{{"periods", counts.periods}, {"late", counts.late}};
+    };
+    print(Json{{"precedence", b->precedence},
+               {"timer", pace(b->timer)},
+               {"loop", pace(b->loop)},
+               {"late_excess", late_excess(*b)},
+               {"samples", b->samples},
+               {"felt", b->felt},
+               {"steps", b->steps}},
+          options->json);
+  });
+}
+
 void add_record_bench(CLI::App& bench, int& status) {
   struct Options {
     std::string out = "bench-record.fude";
@@ -176,6 +213,7 @@ void add_bench(CLI::App& app, int& status) {
   add_ink(*bench, status);
   add_brush(*bench, status);
   add_pipeline(*bench, status);
+  add_haptic(*bench, status);
   add_record_bench(*bench, status);
 }
 

@@ -8,6 +8,7 @@
 #include "drivers/falcon/force_guard.h"
 #include "drivers/falcon/ftdi.h"
 #include "drivers/falcon/haptic_loop.h"
+#include "drivers/falcon/simulated_arm.h"
 #include "tests/fakes/falcon_arm.h"
 #include "tests/fakes/transfers.h"
 
@@ -251,6 +252,29 @@ TEST(HapticLoop, AnArmThatComesBackIsGreetedAgain) {
   EXPECT_GT(rig.arm.sent.size(), before);
   EXPECT_TRUE(rig.forceless());
   EXPECT_EQ(rig.decoder.state(), FalconDecoder::State::running);
+}
+
+TEST(SimulatedArm, IsWhereTheHandIs) {
+  const Vector3d places[] = {{0, 0, 0}, {0.02, 0.01, -0.01}, {-0.03, 0.02, 0.02}};
+  for (const Vector3d& place : places) {
+    SimulatedArm arm([&](Timestamp) { return place; });
+    FalconDecoder decoder({}, false);
+    for (const Transfer& transfer : decoder.greeting()) ASSERT_TRUE(arm.write(transfer));
+    const auto answer = arm.read(Timestamp{});
+    ASSERT_TRUE(answer && *answer);
+    const auto sample = std::get<HapticSample>(decoded(decoder, **answer).samples.at(0));
+    EXPECT_TRUE(sample.homed);
+    EXPECT_LT((sample.position_m - place).norm(), 1e-4);  // a count is some hundredths of a millimetre
+  }
+}
+
+TEST(SimulatedArm, BetweenItsAnswersTheChipSaysThatItIsThere) {
+  SimulatedArm arm([](Timestamp) { return Vector3d::Zero(); });
+  const auto status = arm.read(std::nullopt);
+  ASSERT_TRUE(status && *status);
+  EXPECT_TRUE(without_status((*status)->payload).empty());
+  arm.wake();
+  while (*arm.read(std::nullopt)) continue;  // until the wake-up
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <linux/input-event-codes.h>
 #include <umockdev.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -13,6 +14,8 @@
 #include <thread>
 
 #include "capture/session.h"
+#include "drivers/falcon/falcon_decoder.h"
+#include "drivers/falcon/simulated_arm.h"
 #include "drivers/openigtlink/message.h"
 #include "drivers/openigtlink/openigtlink_decoder.h"
 #include "drivers/transport/tcp_source.h"
@@ -186,6 +189,45 @@ TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
   EXPECT_LT(given.tracker_from_tool.rotation.angularDistance(seen.tracker_from_tool.rotation), 1e-6);
   ASSERT_EQ((*relay)->relayed().size(), 1u);
   EXPECT_GE((*relay)->relayed()[0].given, 1u);
+}
+
+// The whole dialogue with an arm is in the session, and decodes to what was felt: no force, for nobody
+// paints.
+TEST_F(LiveDevices, AnArmIsRecordedByItsLoop) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "arm.fude";
+  std::filesystem::remove(file);
+  std::atomic<int> asked{0};
+  NamedDevice arm;
+  arm.family = find_family("falcon", "usb");
+  arm.description.name = "Falcon";
+  arm.description.kind = arm.family->kind;
+  arm.description.transport = "usb";
+  arm.open = [&]() -> Result<std::unique_ptr<ByteSource>> {
+    return std::make_unique<falcon::SimulatedArm>([&](Timestamp) {
+      ++asked;
+      return Eigen::Vector3d(0.01, 0.02, -0.01);
+    });
+  };
+  auto recording =
+      RecordingSession::start(file, {.overwrite = false, .named = {arm}}, [](const std::string&) {});
+  ASSERT_TRUE(recording) << recording.error().message;
+  while (asked < 200) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto streams = (*recording)->finish();
+  ASSERT_TRUE(streams) << streams.error().message;
+
+  const auto session = read_session(file);
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_GE(session->samples.size(), 199u);
+  FalconDecoder decoder({}, false);
+  Decoded again;
+  for (const RecordedTransfer& recorded : session->transfers) decoder.decode(recorded.transfer, again);
+  ASSERT_EQ(again.samples.size(), session->samples.size());
+  for (std::size_t i = 0; i < again.samples.size(); ++i) {
+    const auto& sample = std::get<HapticSample>(session->samples[i].sample);
+    EXPECT_EQ(sample.encoder_counts, std::get<HapticSample>(again.samples[i]).encoder_counts);
+    EXPECT_TRUE(sample.force_n.isZero());
+  }
+  std::filesystem::remove(file);
 }
 
 TEST_F(LiveDevices, WithoutATabletNoSessionIsMade) {
