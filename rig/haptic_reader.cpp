@@ -36,6 +36,7 @@ void HapticReader::serve() {
     }
     say_what_is_missing();
   }
+  loop_.part();
 }
 
 void HapticReader::say_what_is_missing() {

@@ -36,6 +36,11 @@ Result<void> HapticLoop::step() {
   return {};
 }
 
+void HapticLoop::part() {
+  let_go();
+  speak();
+}
+
 void HapticLoop::let_go() {
   last_.reset();
   guard_.release();

@@ -39,6 +39,9 @@ class HapticLoop {
   // arm does not take releases the guard and ends nothing. Errors: those of the source's read().
   Result<void> step();
 
+  // The last word: no force. Nobody knows how long an arm holds the one before.
+  void part();
+
   Counts counts() const { return {pace_.counts(), samples_, unsent_}; }
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -81,12 +82,11 @@ struct Trial {
   Watch watch;
   std::atomic<bool> ended{false};
 
-  std::unique_ptr<HapticReader> start() {
+  std::unique_ptr<HapticReader> start(Reader::Heard heard = [](const Transfer&, std::span<const Sample>) {}) {
     HapticWish wish;
     wish.feel = feel_of(models, {});
     wish.clock = std::move(own_clock);
-    return std::make_unique<HapticReader>(
-        std::move(own_arm), decoder, [](const Transfer&, std::span<const Sample>) {}, std::move(wish));
+    return std::make_unique<HapticReader>(std::move(own_arm), decoder, std::move(heard), std::move(wish));
   }
   void see_all(Timestamp valid_until) {
     for (const FalconArm::Sent& sent : arm.sent) watch.see(sent, valid_until);
@@ -189,6 +189,26 @@ TEST(ForceSafety, HoldsWithABrushOnAnotherThread) {
   EXPECT_TRUE(trial.watch.finite);
   EXPECT_TRUE(trial.watch.in_time);
   EXPECT_LE(trial.watch.largest_n, trial.watch.limits.limit_n + a_motor_count_n);
+}
+
+TEST(ForceSafety, TheLastWordIsNoForce) {
+  Trial trial;
+  std::optional<ToArm> last;
+  int with_force = 0;
+  trial.clock.woke = [&, ms = 0](Timestamp now) mutable {
+    trial.models.put(paper_plane(10, later(now, 20)));
+    if (++ms == 100) trial.ended = true;
+  };
+  const auto reader = trial.start([&](const Transfer& transfer, std::span<const Sample>) {
+    if (transfer.direction != Direction::to_device) return;
+    last = read_to_arm(transfer.payload);
+    with_force += last && last->motors != std::array<std::int16_t, 3>{};
+  });
+  trial.wait();
+  EXPECT_FALSE(reader->stop());
+  EXPECT_GT(with_force, 50);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->motors, (std::array<std::int16_t, 3>{}));
 }
 
 }  // namespace
