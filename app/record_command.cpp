@@ -26,6 +26,7 @@ struct Options {
   std::string camera_size;
   std::string camera_format;
   std::optional<double> camera_exposure_ms;
+  std::string frames = "as-sent";
   CameraSettings camera;
 };
 
@@ -39,6 +40,11 @@ Json clock_fit(const std::vector<ClockLine>& lines) {
   return {{"offset_ns", line.offset.time_since_epoch().count()},
           {"drift_ppm", drift ? Json(*drift) : Json()},
           {"residual_us", line.residual_s.p50 * 1e6}};
+}
+
+Json pictures(const std::optional<FrameKeeper::Counts>& frames) {
+  if (!frames) return nullptr;
+  return {{"as_wished", frames->as_wished}, {"as_sent", frames->as_sent}};
 }
 
 Json as_json(const std::vector<RecordedStream>& streams) {
@@ -57,7 +63,8 @@ Json as_json(const std::vector<RecordedStream>& streams) {
                       {{"p50", s.figures.delay_us.p50},
                        {"p99", s.figures.delay_us.p99},
                        {"max", s.figures.delay_us.largest}}},
-                     {"clock_fit", clock_fit(s.figures.clock)}};
+                     {"clock_fit", clock_fit(s.figures.clock)},
+                     {"pictures", pictures(s.frames)}};
   return {{"streams", all}};
 }
 
@@ -67,6 +74,11 @@ int write_report(const std::string& path, const std::vector<RecordedStream>& str
   file.flush();
   if (file) return 0;
   return report({Fault::storage, path + " cannot be written; choose another name for the report"});
+}
+
+FrameEncoding frame_encoding(const std::string& word) {
+  if (word == "png") return FrameEncoding::png;
+  return word == "jpeg" ? FrameEncoding::jpeg : FrameEncoding::as_sent;
 }
 
 // "1280x720".
@@ -93,7 +105,10 @@ CameraSettings camera_settings(const Options& options) {
 
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  RecordingWish wish{.overwrite = options.force, .named = {}, .camera = camera_settings(options)};
+  RecordingWish wish{.overwrite = options.force,
+                     .named = {},
+                     .camera = camera_settings(options),
+                     .frames = frame_encoding(options.frames)};
   for (const std::string& name : options.named) {
     auto device = named_device(name);
     if (!device) return report(device.error());
@@ -110,10 +125,16 @@ int record(const Options& options) {
   const bool interrupted = interrupt.wait(limit);
   const auto streams = (*recording)->finish();
   if (!streams) return report(streams.error());
-  for (const RecordedStream& stream : *streams)
+  for (const RecordedStream& stream : *streams) {
     std::printf("%s: expected %lld, received %lld, dropped %lld\n", stream.device.c_str(),
                 static_cast<long long>(stream.expected), static_cast<long long>(stream.received),
                 static_cast<long long>(stream.dropped));
+    if (stream.frames && stream.frames->as_sent > 0)
+      std::printf("%s: %llu of %llu pictures are kept as sent, damaged or too many at once for --frames %s\n",
+                  stream.device.c_str(), static_cast<unsigned long long>(stream.frames->as_sent),
+                  static_cast<unsigned long long>(stream.frames->as_sent + stream.frames->as_wished),
+                  options.frames.c_str());
+  }
   if (!options.report.empty())
     if (const int failed = write_report(options.report, *streams); failed != 0) return failed;
   return interrupted ? 130 : 0;
@@ -141,6 +162,10 @@ void add_record(CLI::App& app, int& status) {
       ->check(CLI::Range(0.1, 100000.0));
   command->add_option("--camera-gain", options->camera.gain, "held, in the camera's own units");
   command->add_option("--camera-focus", options->camera.focus, "held, in the camera's own units");
+  command
+      ->add_option("--frames", options->frames,
+                   "how pictures are kept; png loses nothing, jpeg is smaller; default: as-sent")
+      ->check(CLI::IsMember({"as-sent", "png", "jpeg"}));
   command->add_flag("--force", options->force, "replace an existing session");
   command->callback([options, &status] { status = record(*options); });
 }

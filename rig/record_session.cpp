@@ -38,7 +38,7 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
     std::filesystem::remove(session, ignored);
   auto recorder = Recorder::open(session);
   if (!recorder) return tl::unexpected(recorder.error());
-  std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder)));
+  std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder), wish.frames));
   RecordingSession* raw = recording.get();
   DeviceListener listener;
   listener.appeared = [raw](std::size_t, const DeviceDescription& device) { raw->begin(device); };
@@ -64,7 +64,17 @@ void RecordingSession::begin(const DeviceDescription& device) {
     return s->name == device.name || s->name.starts_with(device.name + " ");
   });
   const std::string name = same == 0 ? device.name : device.name + " " + std::to_string(same + 1);
-  streams_.push_back(std::make_unique<Stream>(Stream{name, StreamMeter(device.clock)}));
+  streams_.push_back(std::make_unique<Stream>(Stream{name, StreamMeter(device.clock), nullptr}));
+  if (device.kind != DeviceKind::camera || frames_ == FrameEncoding::as_sent) return;
+  streams_.back()->frames = std::make_unique<FrameKeeper>(
+      [wish = frames_](std::span<const std::byte> picture, CameraFrame& frame) {
+        return encoded(picture, frame, wish);
+      },
+      [recorder = recorder_.get(), camera = number(streams_.size() - 1)](Transfer transfer,
+                                                                         std::optional<CameraFrame> frame) {
+        recorder->add(RecordedTransfer{camera, std::move(transfer)});
+        if (frame) recorder->add(RecordedSample{camera, *frame, 0});
+      });
 }
 
 std::string RecordingSession::name_of(std::size_t device) {
@@ -73,15 +83,20 @@ std::string RecordingSession::name_of(std::size_t device) {
 }
 
 void RecordingSession::keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples) {
-  recorder_->add(RecordedTransfer{number(device), transfer});
   Stream* stream = nullptr;
   {
     const std::lock_guard lock(mutex_);
     stream = streams_[device].get();
   }
   if (!samples.empty()) stream->meter.decoded_after(monotonic_now() - transfer.time);
+  for (const Sample& sample : samples) stream->meter.add(time_of(sample), after_gap(sample));
+  if (stream->frames) {
+    const auto* frame = samples.empty() ? nullptr : std::get_if<CameraFrame>(&samples.front());
+    stream->frames->add(transfer, frame ? std::optional(*frame) : std::nullopt);
+    return;
+  }
+  recorder_->add(RecordedTransfer{number(device), transfer});
   for (const Sample& sample : samples) {
-    stream->meter.add(time_of(sample), after_gap(sample));
     if (const auto* pen = std::get_if<PenSample>(&sample))
       recorder_->add(RecordedPen{0, number(device), *pen, std::nullopt});
     else
@@ -97,7 +112,8 @@ Result<std::vector<RecordedStream>> RecordingSession::finish() {
     const auto dropped = static_cast<std::int64_t>(counts[i].lost);
     const auto received = static_cast<std::int64_t>(counts[i].reports);
     streams.push_back(
-        {streams_[i]->name, received + dropped, received, dropped, streams_[i]->meter.figures()});
+        {streams_[i]->name, received + dropped, received, dropped, streams_[i]->meter.figures(), {}});
+    if (streams_[i]->frames) streams.back().frames = streams_[i]->frames->finish();
     recorder_->add(Receipt{number(i), received + dropped, received, dropped});
     for (const ClockLine& line : streams.back().figures.clock)
       recorder_->add(RecordedClockFit{number(i), "", line});

@@ -6,10 +6,13 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "capture/picture/frame_encoding.h"
 #include "rig/devices.h"
+#include "rig/frame_keeper.h"
 #include "rig/recorder.h"
 #include "rig/stream_meter.h"
 #include "signal/result.h"
@@ -23,12 +26,14 @@ struct RecordedStream {
   std::int64_t received = 0;
   std::int64_t dropped = 0;
   StreamFigures figures;
+  std::optional<FrameKeeper::Counts> frames;  // of a camera whose pictures were to be encoded
 };
 
 struct RecordingWish {
   bool overwrite = false;  // an existing session, and only when there is something to record
   std::vector<NamedDevice> named;
   CameraSettings camera;  // what every camera is asked for
+  FrameEncoding frames = FrameEncoding::as_sent;
 };
 
 class RecordingSession {
@@ -47,13 +52,16 @@ class RecordingSession {
   struct Stream {
     std::string name;
     StreamMeter meter;
+    std::unique_ptr<FrameKeeper> frames;  // null: everything is written as it comes
   };
-  explicit RecordingSession(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
+  RecordingSession(std::unique_ptr<Recorder> recorder, FrameEncoding frames)
+      : recorder_(std::move(recorder)), frames_(frames) {}
   void begin(const DeviceDescription& device);
   std::string name_of(std::size_t device);
   void keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples);
 
   std::unique_ptr<Recorder> recorder_;
+  FrameEncoding frames_;
   std::mutex mutex_;  // of the list, not of its streams: each is its reader's
   std::vector<std::unique_ptr<Stream>> streams_;
   std::unique_ptr<Devices> devices_;

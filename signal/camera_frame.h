@@ -1,4 +1,4 @@
-// One picture of a camera as it came: the bytes stay in the transfer or on disk, this says what they are.
+// One picture of a camera: the bytes stay in the transfer or on disk, this says what they are.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace fude {
 
-enum class PixelFormat : std::uint8_t { grey, yuyv, mjpeg, png };  // png: a recording's own
+enum class PixelFormat : std::uint8_t { grey, yuyv, mjpeg, png };  // png: only in recordings
 
 // Which moment of the exposure the time names.
 enum class ExposureMoment : std::uint8_t { unknown, start, end };

@@ -24,7 +24,7 @@ enum class TransferKind : std::uint8_t {
   usb_interrupt,  // one transfer of `endpoint`
   serial,         // bytes as they came: neither their beginning nor their end means anything
   message,        // one whole network message with its header
-  picture,        // one camera frame as the driver gave it
+  picture,        // one camera frame as it came, or as a recording was asked to keep it
   plugged,        // payload empty; the device appeared
   unplugged,      // payload empty; the device went away
   suspended,      // payload empty; it is there but silent until `plugged`
