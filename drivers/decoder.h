@@ -33,7 +33,7 @@ class Decoder {
   virtual std::vector<Transfer> greeting() { return {}; }
 
   // Adds to `out`. Transfers of a direction or kind that the family does not have are ignored; bytes of
-  // any content are safe. `unplugged` forgets the state and marks the next sample `after_gap`.
+  // any content are safe. `unplugged` and `suspended` forget the state and mark the next sample `after_gap`.
   virtual void decode(const Transfer& transfer, Decoded& out) = 0;
 
   const ReportCounts& counts() const { return counts_; }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "drivers/transport/returning_source.h"
+#include "drivers/transport/sleep_aware_source.h"
 #include "drivers/transport/waker.h"
 #include "rig/haptic_reader.h"
 
@@ -91,7 +92,7 @@ void Devices::plugged(const AttachedDevice& found) {
   }
   if (const auto* camera = dynamic_cast<const V4l2Source*>(source->get()); camera && listener_.camera)
     listener_.camera(number, camera->settings());
-  read(number, std::move(*source));
+  read(number, std::make_unique<SleepAwareSource>(std::move(*source), AfterSleep::goes_on, wish_.sleep));
 }
 
 void Devices::add(const NamedDevice& named) {
@@ -103,6 +104,9 @@ void Devices::add(const NamedDevice& named) {
          auto source = open();
          if (!source && !told) listener_.refused(source.error());
          told = !source;
+         if (source)
+           *source = std::make_unique<SleepAwareSource>(std::move(*source), AfterSleep::is_opened_anew,
+                                                        wish_.sleep);
          return source;
        }));
 }

@@ -1,5 +1,6 @@
 // The devices of the rig, read as long as they are there. A device that comes back is the same one: it
-// keeps its number and its driver, and its next sample follows a gap.
+// keeps its number and its driver, and its next sample follows a gap; so does that of a device which stayed
+// while the machine slept.
 #pragma once
 
 #include <atomic>
@@ -14,6 +15,7 @@
 
 #include "drivers/decoder.h"
 #include "drivers/transport/device_nodes.h"
+#include "drivers/transport/sleep_watch.h"
 #include "rig/attached_devices.h"
 #include "rig/device_reader.h"
 #include "signal/result.h"
@@ -43,6 +45,7 @@ struct DevicesWish {
   std::function<bool(const AttachedDevice&)> wanted;  // empty: all
   std::vector<NamedDevice> named;
   CameraSettings camera;  // of every camera
+  SleepWatch sleep;
 };
 
 class Devices {

@@ -51,7 +51,8 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
     if (const std::string remark = camera_remark(asked, given); !remark.empty())
       warn(raw->name_of(device) + ": " + remark);
   };
-  auto devices = Devices::open(std::move(listener), {.named = std::move(wish.named), .camera = wish.camera});
+  auto devices = Devices::open(std::move(listener),
+                               {.named = std::move(wish.named), .camera = wish.camera, .sleep = wish.sleep});
   if (!devices) return tl::unexpected(devices.error());
   recording->devices_ = std::move(*devices);
   return recording;

@@ -34,6 +34,7 @@ struct RecordingWish {
   std::vector<NamedDevice> named;
   CameraSettings camera;  // what every camera is asked for
   FrameEncoding frames = FrameEncoding::as_sent;
+  SleepWatch sleep;
 };
 
 class RecordingSession {

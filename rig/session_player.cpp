@@ -198,9 +198,11 @@ void SessionPlayer::lead_in(Device& device) {
     const auto read = device.source.read(std::nullopt);
     device.driver.decode(**read, unheard);
     unheard.clear();
-    if ((*read)->kind == TransferKind::unplugged || (*read)->kind == TransferKind::plugged) {
-      away = (*read)->kind == TransferKind::unplugged;
+    if ((*read)->kind == TransferKind::unplugged) {
+      away = true;
       device.state.reset();
+    } else if ((*read)->kind == TransferKind::plugged) {
+      away = false;
     } else if ((*read)->kind == TransferKind::evdev_frame) {
       device.state.apply(unpack_events((*read)->payload).value_or(std::vector<EvdevEvent>{}));
     }

@@ -27,7 +27,7 @@ enum class TransferKind : std::uint8_t {
   picture,        // one camera frame as it came, or as a recording was asked to keep it
   plugged,        // payload empty; the device appeared
   unplugged,      // payload empty; the device went away
-  suspended,      // payload empty; it is there but silent until `plugged`
+  suspended,      // payload empty; the machine or the device slept, until `plugged`
 };
 
 struct Transfer {

@@ -3,7 +3,7 @@
 namespace fude {
 
 void CameraDecoder::decode(const Transfer& transfer, Decoded& out) {
-  if (transfer.kind == TransferKind::unplugged) {
+  if (transfer.kind == TransferKind::unplugged || transfer.kind == TransferKind::suspended) {
     after_absence_ = true;
     last_.reset();
   }

@@ -97,7 +97,7 @@ PenReport HidPenDecoder::read(Bytes report) {
 }
 
 void HidPenDecoder::decode(const Transfer& transfer, Decoded& out) {
-  if (transfer.kind == TransferKind::unplugged) {
+  if (transfer.kind == TransferKind::unplugged || transfer.kind == TransferKind::suspended) {
     pen_ = {};
     after_gap_ = true;
   }

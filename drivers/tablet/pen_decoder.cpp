@@ -53,9 +53,12 @@ PenDecoder::PenDecoder(const DeviceDescription& device)
 std::optional<PenSample> PenDecoder::decode(const Transfer& transfer) {
   if (transfer.direction != Direction::from_device) return std::nullopt;
   if (transfer.kind == TransferKind::plugged) return std::nullopt;
-  if (transfer.kind == TransferKind::unplugged) {
+  if (transfer.kind == TransferKind::unplugged || transfer.kind == TransferKind::suspended) {
     const bool was_present = was_present_;
-    state_ = initial_;
+    if (transfer.kind == TransferKind::unplugged)
+      state_ = initial_;
+    else
+      let_go_of_keys();
     begin_gap();
     stale_ = false;
     if (!was_present) return std::nullopt;
@@ -70,6 +73,13 @@ std::optional<PenSample> PenDecoder::decode(const Transfer& transfer) {
     return std::nullopt;
   }
   return decode_frame(*events, transfer);
+}
+
+// As the kernel does when it is suspended. An axis it tells again only when that has moved.
+void PenDecoder::let_go_of_keys() {
+  state_.tools = {};
+  state_.touching = false;
+  state_.buttons = 0;
 }
 
 std::optional<PenSample> PenDecoder::decode_frame(std::span<const EvdevEvent> events,

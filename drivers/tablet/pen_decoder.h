@@ -32,7 +32,7 @@ class PenDecoder {
   explicit PenDecoder(const DeviceDescription& device);
 
   // At most one sample a transfer: the state at the end of a SYN_REPORT frame. When the pen leaves
-  // (or the device is unplugged) one sample of tool `none` says so. After SYN_DROPPED everything up
+  // (or the device is unplugged or suspended) one sample of tool `none` says so. After SYN_DROPPED everything up
   // to the next SYN_REPORT is stale and discarded; the sample after it is marked `after_gap`.
   // Positions may lie one range beyond the described area (the pen at its edge), never farther.
   std::optional<PenSample> decode(const Transfer& transfer);
@@ -55,6 +55,7 @@ class PenDecoder {
   void apply(const EvdevEvent& event, bool from_pad);
   void set_axis(std::uint16_t code, std::int32_t value);
   void begin_gap();
+  void let_go_of_keys();
   PenTool tool() const;
   bool in_contact() const;
   PenSample stamped(const Transfer& transfer);

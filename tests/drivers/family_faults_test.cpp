@@ -147,6 +147,26 @@ TEST_P(FamilyFaults, UnpluggedAtEveryByte) {
   }
 }
 
+// The machine sleeps after any report, the device stays where it is: the next sample follows a gap, nothing
+// counts as lost or malformed, and the stream goes on.
+TEST_P(FamilyFaults, SuspendedInMidStream) {
+  for (std::size_t before = 0; before < 6; ++before) {
+    const auto decoder = greeted();
+    decoded_all(*decoder,
+                {stream_.reports.begin(), stream_.reports.begin() + static_cast<std::ptrdiff_t>(before)});
+    decoded(*decoder, from_device(TransferKind::suspended));
+    decoded(*decoder, from_device(TransferKind::plugged));
+    decoder->greeting();
+    for (const Transfer& answer : stream_.introduction) decoded(*decoder, answer);
+    const auto after = decoded_all(*decoder, stream_.reports);
+    ASSERT_EQ(after.size(), all_samples()) << before;
+    for (std::size_t i = 0; i < after.size(); ++i)
+      EXPECT_EQ(after_gap(after[i]), i == 0) << before << ' ' << i;
+    EXPECT_EQ(decoder->counts().malformed, 0u);
+    EXPECT_EQ(decoder->counts().lost, 0u);
+  }
+}
+
 TEST_P(FamilyFaults, NeighboursChangePlaces) {
   auto reports = stream_.reports;
   for (std::size_t i = 10; i + 1 < reports.size(); i += 7) std::swap(reports[i], reports[i + 1]);

@@ -220,17 +220,19 @@ TEST(Joycon, AUnitThatIsOffSaysNothing) {
   EXPECT_FALSE(imu(decoded(decoder, from_device(TransferKind::hid_report, off)), 0).valid);
 }
 
-TEST(Joycon, UnplugForgetsTheCalibrationAndMarksTheGap) {
-  JoyconDecoder decoder;
-  decoded(decoder, flash_asked());
-  decoded(decoder, reply(0, 0x10, factory, 0));
-  decoded(decoder, full(3, 15));
-  decoded(decoder, from_device(TransferKind::unplugged));
-  EXPECT_FALSE(decoder.calibrated());
-  const ImuSample s = imu(decoded(decoder, full(200, 9000)), 0);
-  EXPECT_TRUE(s.after_gap);
-  EXPECT_EQ(s.time.sequence, 3u);
-  EXPECT_EQ(decoder.counts().lost, 0u);
+TEST(Joycon, AbsenceAndSleepForgetTheCalibrationAndMarkTheGap) {
+  for (const TransferKind away : {TransferKind::unplugged, TransferKind::suspended}) {
+    JoyconDecoder decoder;
+    decoded(decoder, flash_asked());
+    decoded(decoder, reply(0, 0x10, factory, 0));
+    decoded(decoder, full(3, 15));
+    decoded(decoder, from_device(away));
+    EXPECT_FALSE(decoder.calibrated());
+    const ImuSample s = imu(decoded(decoder, full(200, 9000)), 0);
+    EXPECT_TRUE(s.after_gap);
+    EXPECT_EQ(s.time.sequence, 3u);
+    EXPECT_EQ(decoder.counts().lost, 0u);
+  }
 }
 
 // Made here: the head of a rail packet around a report, with both checksums.

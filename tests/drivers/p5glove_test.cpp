@@ -142,12 +142,14 @@ TEST(P5Glove, OtherLengthsAndNumbersAreCounted) {
   EXPECT_EQ(decoder.counts(), (ReportCounts{.malformed = 3, .unknown = 1}));
 }
 
-TEST(P5Glove, UnplugForgetsTheTower) {
-  P5GloveDecoder decoder;
-  calibrate(decoder);
-  decoded(decoder, from_device(TransferKind::unplugged));
-  EXPECT_FALSE(decoder.tower());
-  EXPECT_TRUE(glove(decoder, report(0, 0, 0, 0)).after_gap);
+TEST(P5Glove, AbsenceAndSleepForgetTheTower) {
+  for (const TransferKind away : {TransferKind::unplugged, TransferKind::suspended}) {
+    P5GloveDecoder decoder;
+    calibrate(decoder);
+    decoded(decoder, from_device(away));
+    EXPECT_FALSE(decoder.tower());
+    EXPECT_TRUE(glove(decoder, report(0, 0, 0, 0)).after_gap);
+  }
 }
 
 }  // namespace

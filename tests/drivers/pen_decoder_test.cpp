@@ -250,6 +250,28 @@ TEST(PenDecoder, UnplugEndsTheStrokeAndForgetsTheState) {
   EXPECT_FALSE(again->in_contact);
 }
 
+// The kernel lets go of the keys, and tells of an axis again only once it has moved.
+TEST(PenDecoder, SuspensionEndsTheStrokeAndKeepsTheAxes) {
+  PenDecoder decoder(intuos4());
+  decoder.decode(frame({key(BTN_TOOL_PEN, 1), key(BTN_TOUCH, 1), key(BTN_STYLUS, 1), axis(ABS_PRESSURE, 500),
+                        axis(ABS_X, 70), axis(ABS_Y, 80)}));
+  Transfer slept;
+  slept.kind = TransferKind::suspended;
+  const auto left = decoder.decode(slept);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->tool, PenTool::none);
+  EXPECT_FALSE(decoder.decode(slept));
+  EXPECT_FALSE(decoder.decode(frame({key(BTN_TOOL_PEN, 0)})));  // the kernel's own word of it
+  const auto again = decoder.decode(frame({key(BTN_TOOL_PEN, 1), axis(ABS_X, 75)}));
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->after_gap);
+  EXPECT_FALSE(again->in_contact);
+  EXPECT_EQ(again->buttons, 0u);
+  EXPECT_EQ(again->x_counts, 75);
+  EXPECT_EQ(again->y_counts, 80);
+  EXPECT_EQ(decoder.counts().lost, 0u);
+}
+
 TEST(PenDecoder, HostileValuesAreHeldAndCounted) {
   PenDecoder decoder(intuos4());
   constexpr int lowest = std::numeric_limits<std::int32_t>::min();

@@ -132,16 +132,18 @@ TEST(Touch, AfterADropEverythingUpToTheNextReportIsStale) {
   EXPECT_EQ(decoder.counts().lost, 1u);
 }
 
-TEST(Touch, UnplugLiftsEveryFinger) {
-  TouchDecoder decoder(surface());
-  auto both = down(0, 1, 10, 20);
-  for (const auto& e : down(3, 2, 30, 40)) both.push_back(e);
-  frame(decoder, both);
-  const Decoded gone = decoded(decoder, from_device(TransferKind::unplugged));
-  ASSERT_EQ(gone.samples.size(), 2u);
-  EXPECT_FALSE(std::get<TouchSample>(gone.samples[1]).down);
-  EXPECT_TRUE(frame(decoder, {}).empty());
-  EXPECT_TRUE(frame(decoder, down(0, 3, 1, 1)).at(0).after_gap);
+TEST(Touch, AbsenceAndSleepLiftEveryFinger) {
+  for (const TransferKind away : {TransferKind::unplugged, TransferKind::suspended}) {
+    TouchDecoder decoder(surface());
+    auto both = down(0, 1, 10, 20);
+    for (const auto& e : down(3, 2, 30, 40)) both.push_back(e);
+    frame(decoder, both);
+    const Decoded gone = decoded(decoder, from_device(away));
+    ASSERT_EQ(gone.samples.size(), 2u);
+    EXPECT_FALSE(std::get<TouchSample>(gone.samples[1]).down);
+    EXPECT_TRUE(frame(decoder, {}).empty());
+    EXPECT_TRUE(frame(decoder, down(0, 3, 1, 1)).at(0).after_gap);
+  }
 }
 
 TEST(Touch, HostileSlotsAndValuesAreHeld) {

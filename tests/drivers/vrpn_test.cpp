@@ -68,10 +68,12 @@ TEST(Vrpn, WhatWasNotDescribedIsUnknown) {
   EXPECT_TRUE(poses(decoder, pose_message()).empty());
   EXPECT_EQ(decoder.counts().unknown, 1u);
   introduce(decoder);
-  decoded(decoder, from_device(TransferKind::unplugged));
-  EXPECT_TRUE(poses(decoder, pose_message()).empty());  // numbers belong to a connection
-  introduce(decoder);
-  EXPECT_TRUE(poses(decoder, pose_message()).at(0).after_gap);
+  for (const TransferKind away : {TransferKind::unplugged, TransferKind::suspended}) {
+    decoded(decoder, from_device(away));
+    EXPECT_TRUE(poses(decoder, pose_message()).empty());  // numbers belong to a connection
+    introduce(decoder);
+    EXPECT_TRUE(poses(decoder, pose_message()).at(0).after_gap);
+  }
 }
 
 TEST(Vrpn, AVelocityIsReadOverAndAShortOneIsNone) {

@@ -121,6 +121,26 @@ TEST_F(LiveDevices, UnpluggedInMidStrokeAndBackUnderAnotherNodeItIsTheSame) {
   EXPECT_EQ(heard_.appeared.size(), 1u);
 }
 
+TEST_F(LiveDevices, ATabletThatStaysWhileTheMachineSleepsGoesOnAfterAGap) {
+  std::atomic<std::int64_t> asleep_s{0};
+  const auto awake = [] { return monotonic_now().time_since_epoch(); };
+  const SleepWatch sleep(awake, [&] { return awake() + std::chrono::seconds(asleep_s); });
+  MockTablet tablet(testbed_.get(), pen("1"), 5);
+  const auto tablets = Devices::open(heard_.listener(), {.sleep = sleep});
+  ASSERT_TRUE(tablets);
+  draw(tablet, 100);
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 1; }));
+  asleep_s += 3600;  // noticed without an event too
+  ASSERT_TRUE(heard_.until([&] { return heard_.plugs.size() == 2; }));
+  EXPECT_EQ(heard_.plugs, (std::vector{TransferKind::suspended, TransferKind::plugged}));
+  EXPECT_EQ(heard_.samples.at(1).second.tool, PenTool::none);
+  draw(tablet, 700);
+  ASSERT_TRUE(heard_.until([&] { return heard_.samples.size() == 3; }));
+  EXPECT_EQ(heard_.samples[2].first, 0u);
+  EXPECT_TRUE(heard_.samples[2].second.after_gap);
+  EXPECT_EQ(heard_.samples[2].second.x_counts, 700);
+}
+
 TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "recorded.fude";
   std::filesystem::remove(file);
