@@ -1,0 +1,125 @@
+#include "rig/calibrate_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include "calibration/pivot.h"
+#include "capture/session.h"
+#include "rig/calibration_streams.h"
+#include "rig/session_identity.h"
+
+namespace fude {
+namespace {
+
+// What every procedure works on.
+struct Bench {
+  const CalibrationWish& wish;
+  const Session& session;
+  const std::vector<StoredCalibration>& earlier;
+  const OnProgress& on_progress;
+
+  template <class Procedure, class Samples>
+  void feed(Procedure& procedure, const Samples& samples) const {
+    constexpr std::size_t between_reports = 256;
+    std::size_t count = 0;
+    for (const auto& sample : samples) {
+      const Progress progress = procedure.add(sample);
+      if (on_progress && ++count % between_reports == 0) on_progress(progress);
+    }
+  }
+};
+
+template <class T>
+CalibrationOutcome outcome_of(Calibration<T> calibration) {
+  if (!calibration) return {std::move(calibration.error()), std::nullopt};
+  return {std::move(calibration->report), to_fields(calibration->value)};
+}
+
+Result<CalibrationOutcome> calibrate_pivot(const Bench& bench) {
+  const auto poses = tool_poses(bench.session, bench.wish.tool, bench.wish.reference);
+  if (!poses) return tl::unexpected(poses.error());
+  PivotProcedure procedure;
+  bench.feed(procedure, *poses);
+  if (bench.wish.spin) {
+    const auto session = read_session(*bench.wish.spin);
+    if (!session) return tl::unexpected(session.error());
+    const auto spin = tool_poses(*session, bench.wish.tool, bench.wish.reference);
+    if (!spin) return tl::unexpected(spin.error());
+    procedure.begin_spin();
+    bench.feed(procedure, *spin);
+  }
+  return outcome_of(procedure.finish());
+}
+
+using Calibrate = Result<CalibrationOutcome> (*)(const Bench&);
+struct NamedProcedure {
+  std::string_view name;
+  Calibrate calibrate;
+};
+constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot}};
+
+std::string now_utc() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+bool anonymous(std::string_view device) { return device.empty() || device.starts_with("text:"); }
+
+// An earlier calibration counts for the devices it was made with; a table of numbers does not say which.
+Result<void> check_devices(const CalibrationWish& wish, const std::vector<StoredCalibration>& earlier,
+                           const std::vector<std::string>& devices) {
+  for (std::size_t i = 0; i < earlier.size(); ++i) {
+    const std::vector<std::string>& made_with = earlier[i].report.devices;
+    const auto here = [&](const std::string& device) {
+      return anonymous(device) || std::find(devices.begin(), devices.end(), device) != devices.end();
+    };
+    if (std::any_of(devices.begin(), devices.end(), anonymous)) continue;
+    if (const auto other = std::find_if_not(made_with.begin(), made_with.end(), here);
+        other != made_with.end())
+      return failure(Fault::malformed, wish.earlier[i].string() + " was made with the device " + *other +
+                                           ", which is not in this session; calibrate this one");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::span<const std::string_view> calibration_procedures() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const NamedProcedure& p : procedures) all.push_back(p.name);
+    return all;
+  }();
+  return names;
+}
+
+Result<CalibrationOutcome> calibrate_session(const CalibrationWish& wish, const OnProgress& on_progress) {
+  const auto* procedure = std::find_if(std::begin(procedures), std::end(procedures),
+                                       [&](const NamedProcedure& p) { return p.name == wish.procedure; });
+  if (procedure == std::end(procedures))
+    return failure(Fault::usage, "there is no calibration '" + wish.procedure + "'");
+  const auto session = read_session(wish.session);
+  if (!session) return tl::unexpected(session.error());
+  std::vector<std::string> devices;
+  for (const RecordedDevice& device : session->devices) devices.push_back(device.description.id);
+  std::vector<StoredCalibration> earlier;
+  for (const std::filesystem::path& file : wish.earlier) {
+    auto calibration = read_calibration(file);
+    if (!calibration) return tl::unexpected(calibration.error());
+    earlier.push_back(std::move(*calibration));
+  }
+  if (auto sound = check_devices(wish, earlier, devices); !sound) return tl::unexpected(sound.error());
+  auto outcome = procedure->calibrate({wish, *session, earlier, on_progress});
+  if (!outcome) return outcome;
+  outcome->report.date = now_utc();
+  outcome->report.devices = devices;
+  outcome->report.session = session_identity(*session);
+  return outcome;
+}
+
+}  // namespace fude
