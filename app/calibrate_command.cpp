@@ -134,6 +134,9 @@ void add_calibrate(CLI::App& app, int& status) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--spin", options->spin, "pivot: a session in which the handle is spun about itself");
+  command->add_flag("--corners", wish.corners_first,
+                    "surface: the first four touches are the paper's corners, lower left first, "
+                    "counter-clockwise");
   command->add_option("--out", options->out, "the calibration to write (TOML)");
   command->add_option("--report", options->report, "the report to write (JSON), also where it is refused");
   command->add_flag("--json", options->json, "the report on the terminal");

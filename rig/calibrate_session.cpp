@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "calibration/pivot.h"
+#include "calibration/surface.h"
 #include "capture/session.h"
 #include "rig/calibration_streams.h"
 #include "rig/session_identity.h"
@@ -52,12 +53,31 @@ Result<CalibrationOutcome> calibrate_pivot(const Bench& bench) {
   return outcome_of(procedure.finish());
 }
 
+// The tip that was named, or that of an earlier pivot.
+Result<Eigen::Vector3d> tip_of(const Bench& bench) {
+  if (bench.wish.tip_m) return *bench.wish.tip_m;
+  for (const StoredCalibration& earlier : bench.earlier)
+    if (const auto pivot = pivot_from(earlier.result)) return pivot->tip_m;
+  return failure(Fault::usage,
+                 bench.wish.procedure + " needs the tip: give --cal PIVOT.toml or --tip-mm x,y,z");
+}
+
+Result<CalibrationOutcome> calibrate_surface(const Bench& bench) {
+  const auto tip = tip_of(bench);
+  if (!tip) return tl::unexpected(tip.error());
+  const auto poses = tool_poses(bench.session, bench.wish.tool, bench.wish.reference);
+  if (!poses) return tl::unexpected(poses.error());
+  SurfaceProcedure procedure(*tip, bench.wish.corners_first);
+  bench.feed(procedure, *poses);
+  return outcome_of(procedure.finish());
+}
+
 using Calibrate = Result<CalibrationOutcome> (*)(const Bench&);
 struct NamedProcedure {
   std::string_view name;
   Calibrate calibrate;
 };
-constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot}};
+constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot}, {"surface", calibrate_surface}};
 
 std::string now_utc() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

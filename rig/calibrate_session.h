@@ -24,6 +24,7 @@ struct CalibrationWish {
   std::optional<std::filesystem::path> spin;   // pivot: a session in which the handle is spun
   std::vector<std::filesystem::path> earlier;  // calibrations that this one builds on
   std::optional<Eigen::Vector3d> tip_m;        // instead of an earlier pivot
+  bool corners_first = false;                  // surface: the first four touches are the paper's corners
 };
 
 struct CalibrationOutcome {

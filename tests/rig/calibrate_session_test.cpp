@@ -106,6 +106,29 @@ TEST_F(CalibrateSession, TheRecordedPointerTransposedIsRefusedByName) {
       << outcome->report.reason;
 }
 
+// The tip as published (PlusLibData, PlusDeviceSet_Server_Saved_RefToRAS.xml); it goes along two edges.
+TEST_F(CalibrateSession, TheRecordedStylusLiesOnAPlane) {
+  REQUIRE_RECORDING("tracker/plus_reference_stylus_touch.csv");
+  const auto outcome = calibrate_session({.procedure = "surface",
+                                          .session = imported("tracker/plus_reference_stylus_touch.csv"),
+                                          .tool = "stylus",
+                                          .reference = "ref",
+                                          .tip_m = 1e-3 * Eigen::Vector3d(0.857485, 0.25183, 79.097)},
+                                         {});
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->result) << outcome->report.reason;
+  EXPECT_LE(outcome->report.rms, 0.6);
+  std::printf("recorded stylus on two edges: plane residual %.3f mm, %zu places\n", outcome->report.rms,
+              outcome->report.n);
+}
+
+TEST_F(CalibrateSession, ASurfaceNeedsATip) {
+  const auto outcome =
+      calibrate_session({.procedure = "surface", .session = recorded(ScriptedPivot{}.samples())}, {});
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().message.find("--tip-mm"), std::string::npos);
+}
+
 // A brush seen from a reference that is itself carried about.
 TEST_F(CalibrateSession, AReferenceThatMovesStandsForTheTracker) {
   const ScriptedPivot script;

@@ -1,0 +1,284 @@
+#include "calibration/surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/plane_fit.h"
+#include "calibration/sheet_fit.h"
+
+namespace fude {
+namespace {
+
+constexpr double mm_per_m = 1e3;
+constexpr std::size_t fewest_places = 6;
+constexpr std::size_t enough_places = 25;
+constexpr double apart_mm = 2;      // places nearer than this are one
+constexpr double finest_mm = 0.02;  // no touch is better than this
+constexpr double worst_rms_mm = 2;
+constexpr double fair_rms_mm = 0.6;
+constexpr double narrowest_mm = 3;        // standard deviation across the longest extent
+constexpr double narrowest_share = 0.05;  // of the longest extent
+constexpr double most_touches_off = 0.25;
+constexpr double most_wiped_off = 0.7;
+
+using Points = std::vector<Eigen::Vector3d>;
+
+std::size_t different_places(const std::vector<TipPoint>& touches) {
+  Points places;
+  for (const TipPoint& touch : touches) {
+    const Eigen::Vector3d p = mm_per_m * touch.point_m;
+    const auto near = [&](const Eigen::Vector3d& q) { return (p - q).norm() < apart_mm; };
+    if (places.size() < enough_places && std::none_of(places.begin(), places.end(), near))
+      places.push_back(p);
+  }
+  return places.size();
+}
+
+Points chosen(const Points& points, const std::vector<bool>& agrees) {
+  Points some;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (agrees[i]) some.push_back(points[i]);
+  return some;
+}
+
+// The frame whose z is `normal`, whose x lies nearest to `right`, about `origin`.
+Pose<Paper, Tracker> frame(const Eigen::Vector3d& origin, const Eigen::Vector3d& normal,
+                           const Eigen::Vector3d& right) {
+  const Eigen::Vector3d x = (right - right.dot(normal) * normal).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, normal.cross(x), normal;
+  return Pose<Tracker, Paper>{Eigen::Quaterniond(axes), origin}.inverse();
+}
+
+struct Corners {
+  Pose<Paper, Tracker> paper_from_tracker;
+  Eigen::Vector2d size;
+  double worst = 0;  // distance of a corner from the rectangle
+  bool in_order = false;
+};
+
+Corners paper_of(const std::array<Eigen::Vector3d, 4>& c, const Eigen::Vector3d& normal,
+                 const Eigen::Vector3d& on_plane) {
+  std::array<Eigen::Vector3d, 4> flat;
+  for (std::size_t i = 0; i < 4; ++i) flat[i] = c[i] - normal.dot(c[i] - on_plane) * normal;
+  const Eigen::Vector3d middle = (flat[0] + flat[1] + flat[2] + flat[3]) / 4;
+  const Eigen::Vector3d right = (flat[1] - flat[0] + flat[2] - flat[3]) / 2;
+  const Eigen::Vector3d away = (flat[3] - flat[0] + flat[2] - flat[1]) / 2;
+  Corners paper;
+  const auto centred = frame(middle, normal, right);
+  paper.size = {(centred.rotation * right).x(), (centred.rotation * away).y()};
+  paper.in_order = paper.size.y() > 0;
+  paper.paper_from_tracker = centred;
+  paper.paper_from_tracker.translation += Eigen::Vector3d(paper.size.x() / 2, paper.size.y() / 2, 0);
+  const Eigen::Vector2d ideal[] = {{0, 0}, {paper.size.x(), 0}, paper.size, {0, paper.size.y()}};
+  for (std::size_t i = 0; i < 4; ++i)
+    paper.worst = std::max(paper.worst, ((paper.paper_from_tracker * flat[i]).head<2>() - ideal[i]).norm());
+  return paper;
+}
+
+std::vector<double> listed(const Eigen::MatrixXd& m) {
+  std::vector<double> list;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    for (Eigen::Index j = 0; j < m.cols(); ++j) list.push_back(m(i, j));
+  return list;
+}
+
+Eigen::MatrixXd matrix(const std::vector<double>& list, Eigen::Index columns) {
+  Eigen::MatrixXd m(Eigen::Index(list.size()) / columns, columns);
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    for (Eigen::Index j = 0; j < columns; ++j) m(i, j) = list[std::size_t(i * columns + j)];
+  return m;
+}
+
+}  // namespace
+
+Fields to_fields(const SurfaceCalibration& surface) {
+  const Eigen::Quaterniond& q = surface.paper_from_tracker.rotation;
+  const Eigen::Vector3d t_m = surface.paper_from_tracker.translation / mm_per_m;
+  const auto tracker_from_paper = surface.paper_from_tracker.inverse();
+  const auto corner_m = [&](double x, double y) {
+    const double z = surface.sheet ? surface.sheet->at(Eigen::RowVector2d(x, y))(0) : 0;
+    return Eigen::Vector3d((tracker_from_paper * Eigen::Vector3d(x, y, z)) / mm_per_m);
+  };
+  std::vector<double> corners;
+  for (const auto& [x, y] :
+       {std::pair(0.0, 0.0), std::pair(surface.width_mm, 0.0), std::pair(surface.width_mm, surface.height_mm),
+        std::pair(0.0, surface.height_mm)})
+    for (const double v : corner_m(x, y)) corners.push_back(v);
+  Fields fields{{"shape", std::string(surface.sheet ? "sheet" : "plane")},
+                {"paper_from_tracker_q", std::vector{q.w(), q.x(), q.y(), q.z()}},
+                {"paper_from_tracker_m", std::vector{t_m.x(), t_m.y(), t_m.z()}},
+                {"width_mm", surface.width_mm},
+                {"height_mm", surface.height_mm},
+                {"corners_m", corners}};
+  if (surface.sheet) {
+    fields.push_back({"sheet_centre_mm", listed(surface.sheet->centre())});
+    fields.push_back({"sheet_scale_mm", surface.sheet->scale()});
+    fields.push_back({"sheet_knots", listed(surface.sheet->knots())});
+    fields.push_back({"sheet_weights_mm", listed(surface.sheet->weights())});
+    fields.push_back({"sheet_polynomial_mm", listed(surface.sheet->coefficients())});
+  }
+  return fields;
+}
+
+std::optional<SurfaceCalibration> surface_from(const Fields& fields) {
+  const auto q = numbers_in(fields, "paper_from_tracker_q");
+  const auto t_m = numbers_in(fields, "paper_from_tracker_m");
+  const auto width = numbers_in(fields, "width_mm"), height = numbers_in(fields, "height_mm");
+  if (!q || q->size() != 4 || !t_m || t_m->size() != 3 || !width || !height || width->empty() ||
+      height->empty())
+    return std::nullopt;
+  SurfaceCalibration surface;
+  const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+  if (!(std::abs(rotation.norm() - 1) < 1e-3)) return std::nullopt;
+  surface.paper_from_tracker = {rotation.normalized(), mm_per_m * Eigen::Vector3d(t_m->data())};
+  surface.width_mm = width->front();
+  surface.height_mm = height->front();
+  if (text_in(fields, "shape") != "sheet") return surface;
+  const auto centre = numbers_in(fields, "sheet_centre_mm"), scale = numbers_in(fields, "sheet_scale_mm"),
+             knots = numbers_in(fields, "sheet_knots"), weights = numbers_in(fields, "sheet_weights_mm"),
+             polynomial = numbers_in(fields, "sheet_polynomial_mm");
+  if (!centre || centre->size() != 2 || !scale || scale->size() != 1 || !(scale->front() > 0) || !knots ||
+      !weights || knots->size() != 2 * weights->size() || !polynomial)
+    return std::nullopt;
+  const bool bowed = polynomial->size() == terms(FreeShape::bowed, 2);
+  if (!bowed && polynomial->size() != terms(FreeShape::quadric, 2)) return std::nullopt;
+  surface.sheet = SmoothField(bowed ? FreeShape::bowed : FreeShape::quadric,
+                              Eigen::RowVector2d((*centre)[0], (*centre)[1]), scale->front(),
+                              matrix(*knots, 2), matrix(*weights, 1), matrix(*polynomial, 1));
+  return surface;
+}
+
+Eigen::Vector3d on_paper(const SurfaceCalibration& surface, const Eigen::Vector3d& tracker_m) {
+  Eigen::Vector3d p = surface.paper_from_tracker * (mm_per_m * tracker_m);
+  if (surface.sheet) p.z() -= surface.sheet->at(p.head<2>().transpose())(0);
+  return p;
+}
+
+Progress SurfaceProcedure::add(const PoseSample& sample) {
+  if (tool_.empty()) tool_ = sample.tool;
+  const bool usable = screen_.look(sample) != PoseScreen::Finding::unusable;
+  if (usable) {
+    const Eigen::Vector3d tip = sample.tracker_from_tool * tip_m_;
+    way_.push_back({sample.time.host, tip, screen_.seen() - 1});
+    handle_side_ += sample.tracker_from_tool.translation - tip;
+    constexpr double far_m = 0.015;
+    const auto near = [&](const Eigen::Vector3d& q) { return (tip - q).norm() < far_m; };
+    if (places_.size() < enough_places && std::none_of(places_.begin(), places_.end(), near))
+      places_.push_back(tip);
+  }
+  const double covered = std::min(1.0, double(places_.size()) / double(enough_places));
+  return {way_.size(), screen_.frozen() ? 0 : covered,
+          covered < 1 ? "touch " + std::to_string(enough_places - places_.size()) + " more places" : ""};
+}
+
+Calibration<SurfaceCalibration> SurfaceProcedure::finish() const {
+  CalibrationReport report;
+  report.procedure = "surface";
+  report.to_frame = "paper";
+  report.from_frame = "tracker of tool " + tool_;
+  screen_.warn(report);
+  if (screen_.frozen())
+    return refusal(report, "all poses are the same: the tracker is frozen, or the brush was never moved");
+  std::vector<TipPoint> touches = resting_places(way_);
+  const bool wiped = different_places(touches) < fewest_places;
+  if (wiped) touches = way_;
+  report.n = touches.size();
+  report.detail("from", std::string(wiped ? "wiping" : "touches"));
+  if (const std::size_t places = different_places(touches); places < fewest_places)
+    return refusal(report, "only " + std::to_string(places) + " different places were touched, " +
+                               std::to_string(fewest_places) + " are the fewest");
+
+  Points points;
+  for (const TipPoint& touch : touches) points.push_back(mm_per_m * touch.point_m);
+  const RobustPlane plane = robust_plane(points, finest_mm);
+  std::vector<bool> agrees = plane.agrees;
+  const auto raised = frame(plane.plane.centre, plane.plane.normal, plane.plane.along);
+  Points over_plane;
+  for (const Eigen::Vector3d& p : points) over_plane.push_back(raised * p);
+  const auto sheet = fit_sheet(over_plane, finest_mm);
+  const bool curved = sheet && sheet->better_than_plane;
+  if (curved) agrees = sheet->agrees;
+
+  const Points used = chosen(points, agrees);
+  const PlaneFit flat = fit_plane(used);
+  report.condition = flat.spread(0) / std::max(1e-9, flat.spread(1));
+  if (flat.spread(1) < std::max(narrowest_mm, narrowest_share * flat.spread(0)))
+    return refusal(report, "all touches lie on one line: touch all over the sheet");
+
+  SurfaceCalibration surface;
+  const Eigen::Vector3d normal = flat.normal.dot(handle_side_) < 0 ? -flat.normal : flat.normal;
+  const Eigen::Vector3d right = flat.along.sum() < 0 ? -flat.along : flat.along;
+  if (corners_first_ && !wiped) {
+    const Corners paper = paper_of({points[0], points[1], points[2], points[3]}, normal, flat.centre);
+    report.detail("corners_off_rectangle_mm", paper.worst);
+    if (!paper.in_order)
+      return refusal(report,
+                     "the corners are out of order: touch lower left, lower right, upper right, upper left");
+    if (paper.worst > 5)
+      report.warnings.push_back("the corners are " + in_words(paper.worst, 1) + " mm off a rectangle");
+    surface.paper_from_tracker = paper.paper_from_tracker;
+    surface.width_mm = paper.size.x();
+    surface.height_mm = paper.size.y();
+  } else {
+    surface.paper_from_tracker = frame(flat.centre, normal, right);
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+    for (const Eigen::Vector3d& p : used) {
+      const Eigen::Vector2d at = (surface.paper_from_tracker * p).head<2>();
+      low = low.cwiseMin(at);
+      high = high.cwiseMax(at);
+    }
+    surface.paper_from_tracker.translation -= Eigen::Vector3d(low.x(), low.y(), 0);
+    surface.width_mm = high.x() - low.x();
+    surface.height_mm = high.y() - low.y();
+    report.warnings.push_back(
+        "the corners of the paper were not touched: it is the rectangle about the touches");
+  }
+
+  Points on_sheet;
+  for (const Eigen::Vector3d& p : used) on_sheet.push_back(surface.paper_from_tracker * p);
+  if (curved) surface.sheet = sheet_through(thinned(on_sheet));
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& p : used) distances.push_back(std::abs(on_paper(surface, p / mm_per_m).z()));
+  summarise(report, distances, 1);
+  const double freedom = curved ? surface.sheet->freedom() : 3;
+  const double n = double(used.size());
+  report.held_out_rms = curved ? sheet->left_out_rms : report.rms * n / std::max(1.0, n - freedom);
+  report.ci95 = {0, 1.96 * report.rms * std::sqrt(freedom / std::max(1.0, n - freedom))};
+  report.detail("degrees_of_freedom", freedom);
+  if (curved) {
+    double most = 0;
+    for (const Eigen::Vector3d& p : on_sheet)
+      most = std::max(most, std::abs(surface.sheet->at(p.head<2>().transpose())(0)));
+    report.detail("farthest_from_plane_mm", most);
+  }
+
+  std::vector<std::string> outliers;
+  for (std::size_t i = 0; i < points.size() && !wiped; ++i)
+    if (!agrees[i])
+      outliers.push_back("touch " + std::to_string(i) + " at " +
+                         in_words(seconds(touches[i].time.time_since_epoch()), 3) + " s, " +
+                         in_words(std::abs(on_paper(surface, touches[i].point_m).z())) + " mm off");
+  report.detail("outliers", outliers);
+  const double off = 1 - n / double(points.size());
+  report.detail("off_surface", off);
+  if (off > (wiped ? most_wiped_off : most_touches_off))
+    return refusal(report,
+                   in_words(100 * off, 0) + " in 100 " + (wiped ? "samples" : "touches") +
+                       " do not lie on one surface: did the tip touch it every time, and is it that tip?");
+  if (report.rms > worst_rms_mm)
+    return refusal(report, "residual " + in_words(report.rms, 1) +
+                               " mm: the surface gave way, or the tip is not where the pivot says");
+  if (!outliers.empty())
+    report.warnings.push_back(std::to_string(outliers.size()) +
+                              " touches are off the surface and were left out");
+  if (report.rms > fair_rms_mm)
+    report.warnings.push_back("residual " + in_words(report.rms) + " mm: press alike at every touch");
+  report.accepted = true;
+  report.reason = std::string(curved ? "a curved sheet" : "a plane") + " known to within " +
+                  in_words((*report.ci95)[1]) + " mm (95 %)";
+  return Calibrated<SurfaceCalibration>{surface, report};
+}
+
+}  // namespace fude
