@@ -9,6 +9,10 @@ namespace {
 
 constexpr double rest_time_constant_s = 0.5;
 constexpr double bias_period_s = 0.1;  // between two lessons of the bias
+// How far off inclination and heading usually are in motion, and at first.
+constexpr double usual_inclination_rad = 0.02, first_inclination_rad = 0.1;
+constexpr double usual_heading_rad = 0.04, first_heading_rad = 0.2;
+constexpr double provisional_heading_s = 1;
 constexpr double field_memory_s = 20;  // of the usual field's strength and dip
 
 // The rotation vector as a quaternion; by series where it is small, as nearly always.
@@ -89,6 +93,7 @@ bool OrientationFilter::add(const InertialReading& reading, double step_s) {
   renormalise(inertial_from_sensor_);
   correct_inclination(force, step_s);
   learn_bias(step_s);
+  heading_sigma_ = std::min(std::numbers::pi, heading_sigma_ + step_s * std::sqrt(bias_covariance_(2, 2)));
   if (reading.magnetic_field_ut && reading.magnetic_field_ut->allFinite())
     correct_heading(*reading.magnetic_field_ut, step_s);
   return true;
@@ -160,10 +165,12 @@ void OrientationFilter::correct_heading(const Eigen::Vector3d& field, double ste
   if (!(norm > 0)) return;
   const Eigen::Vector3d level = level_from_sensor_ * field;
   const Field seen{norm, {level.head<2>().norm() / norm, -level.z() / norm}};
-  if (!has_field_) {
+  if (!has_field_ || force_.age < settings_.force_time_s) {
+    // What is level is not yet known well enough to judge a field by.
     has_field_ = true;
     usual_ = seen;
     sound_time_ = settings_.field_settle_s;
+    heading_age_ = std::min(heading_age_, provisional_heading_s);
   }
   // North lies at heading 0: the field's level part, turned by the heading, must point along y.
   double error = wrapped(std::atan2(level.x(), level.y()) - heading_);
@@ -189,7 +196,10 @@ void OrientationFilter::correct_heading(const Eigen::Vector3d& field, double ste
   }
   if (sound_time_ < settings_.field_settle_s) return;
   heading_age_ = std::min(heading_age_ + step_s, settings_.field_time_s);
-  heading_ = wrapped(heading_ + (heading_known_ ? error * step_s / (heading_age_ + step_s) : error));
+  const double gain = step_s / (heading_age_ + step_s);
+  heading_ = wrapped(heading_ + (heading_known_ ? gain * error : error));
+  heading_sigma_ =
+      heading_known_ ? heading_sigma_ + gain * (usual_heading_rad - heading_sigma_) : first_heading_rad;
   heading_known_ = true;
 }
 
@@ -198,9 +208,28 @@ Eigen::Quaterniond OrientationFilter::earth_from_sensor() const {
   return turn * level_from_sensor_;
 }
 
+Eigen::Vector3d OrientationFilter::variance() const {
+  const double settled = std::min(1.0, force_.age / settings_.force_time_s);
+  const double inclination =
+      first_inclination_rad + settled * (usual_inclination_rad - first_inclination_rad);
+  return Eigen::Vector3d(inclination, inclination, heading_sigma_).cwiseAbs2();
+}
+
+void OrientationFilter::reverse() {
+  bias_ = -bias_;
+  force_.rate = -force_.rate;
+  turned_.value.tail<2>() *= -1;
+  turned_.rate.head<6>() *= -1;
+  rest_turn_.value = -rest_turn_.value;
+  rest_force_.rate = -rest_force_.rate;
+  drift_.setZero();
+  drift_time_ = 0;
+}
+
 void OrientationFilter::set_heading(const Eigen::Quaterniond& earth_from_sensor) {
   heading_ = heading_of((earth_from_sensor * level_from_sensor_.conjugate()).normalized());
   heading_known_ = true;
+  heading_sigma_ = 0;
   heading_age_ = settings_.field_time_s;
 }
 

@@ -55,8 +55,15 @@ class OrientationFilter {
   // Turns the heading so that the sensor is now seen as `earth_from_sensor` has it: an optical or tablet fix.
   void set_heading(const Eigen::Quaterniond& earth_from_sensor);
 
+  // From here on time runs backwards: the readings that follow are the earlier ones, their turn rates
+  // negated.
+  void reverse();
+
   Eigen::Vector3d bias_radps() const { return bias_; }
   Eigen::Vector3d bias_variance() const { return bias_covariance_.diagonal(); }  // (rad/s)²
+  // Of turns about earth's x, y and z, rad²: what is usual where the averages have settled, more before; the
+  // heading without a sound field grows with what the gyroscope's offset may be.
+  Eigen::Vector3d variance() const;
   bool resting() const { return rest_time_ >= settings_.rest_s; }
   bool field_disturbed() const { return has_field_ && sound_time_ < settings_.field_settle_s; }
   bool has_heading() const { return heading_known_; }
@@ -83,7 +90,8 @@ class OrientationFilter {
   Eigen::Quaterniond level_from_inertial_ = Eigen::Quaterniond::Identity();   // z up, any heading
   Eigen::Quaterniond level_from_sensor_ = Eigen::Quaterniond::Identity();
   double heading_ = 0;  // earth from level, about z
-  LowPass<3> force_;    // inertial frame
+  double heading_sigma_ = 0;
+  LowPass<3> force_;  // inertial frame
 
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d bias_covariance_;

@@ -1,0 +1,154 @@
+#include "calibration/fusion/fusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fude {
+namespace {
+
+constexpr Duration snapshot_period = std::chrono::milliseconds(5);
+constexpr int too_late_to_restart = 25;
+
+// Of a correction so much is shown at once; the rest flows in at this speed, faster where there is much of
+// it.
+constexpr double shown_at_once_m = 2e-4, flow_speed_mps = 0.06, flow_time_s = 0.025;
+constexpr double longest_flow_m = 0.02;  // more than that is no correction but another place
+
+}  // namespace
+
+Fusion::Fusion(const FusionSettings& settings, Duration kept)
+    : settings_(settings), kept_(kept), now_(settings) {}
+
+// Many samples in a row from long ago: their clock has begun again, and so does the fusion.
+bool Fusion::restarted(Timestamp time) {
+  if (!now_.started() || time >= now_.time() - kept_) {
+    too_late_in_a_row_ = 0;
+    return false;
+  }
+  if (++too_late_in_a_row_ < too_late_to_restart) {
+    ++lateness_.too_late;
+    return true;
+  }
+  ++lateness_.restarts;
+  too_late_in_a_row_ = 0;
+  events_.clear();
+  snapshots_.clear();
+  forgotten_ = 0;
+  withheld_m_.setZero();
+  now_ = MotionFilter(settings_);
+  return false;
+}
+
+FixResult Fusion::take(const Event& event, bool& fresh) {
+  if (const auto* reading = std::get_if<InertialReading>(&event.what)) {
+    fresh = now_.take(*reading, event.time);
+    if (const auto attitude = now_.attitude_due()) now_.take(*attitude, event.time);
+    return {};
+  }
+  const auto& stamped = std::get<StampedFix>(event.what);
+  return now_.take(stamped.fix, event.time, stamped.assumed_lag_s);
+}
+
+FixResult Fusion::insert(Event event, bool& fresh) {
+  const auto at = std::upper_bound(events_.begin(), events_.end(), event.time,
+                                   [](Timestamp time, const Event& other) { return time < other.time; });
+  if (at == events_.end()) {
+    if (snapshots_.empty() || event.time - snapshots_.back().filter.time() >= snapshot_period)
+      snapshots_.push_back({forgotten_ + events_.size(), now_});
+    events_.push_back(std::move(event));
+    const FixResult result = take(events_.back(), fresh);
+    forget_old();
+    return result;
+  }
+  const std::size_t index = forgotten_ + static_cast<std::size_t>(at - events_.begin());
+  while (!snapshots_.empty() && snapshots_.back().events > index) snapshots_.pop_back();
+  if (snapshots_.empty()) {
+    fresh = false;
+    ++lateness_.too_late;
+    return {FixOutcome::too_late};
+  }
+  ++lateness_.late;
+  events_.insert(at, std::move(event));
+  now_ = snapshots_.back().filter;
+  FixResult result;
+  for (std::size_t i = snapshots_.back().events; i < forgotten_ + events_.size(); ++i) {
+    const Event& again = events_[i - forgotten_];
+    if (i > snapshots_.back().events && again.time - snapshots_.back().filter.time() >= snapshot_period)
+      snapshots_.push_back({i, now_});
+    bool taken = true;
+    const FixResult outcome = take(again, taken);
+    if (i == index) {
+      result = outcome;
+      fresh = taken;
+    }
+  }
+  return result;
+}
+
+void Fusion::forget_old() {
+  const Timestamp oldest = now_.time() - kept_;
+  while (snapshots_.size() > 1 && snapshots_[1].filter.time() < oldest) snapshots_.pop_front();
+  while (forgotten_ < snapshots_.front().events) {
+    events_.pop_front();
+    ++forgotten_;
+  }
+}
+
+// What is still withheld shrinks with time; what has just been corrected joins it.
+void Fusion::flow(Timestamp before, const Eigen::Vector3d& correction) {
+  const auto show = [this](double length_m) {
+    const double size = withheld_m_.norm();
+    withheld_m_ *= size > length_m ? 1 - length_m / size : 0;
+  };
+  const double step_s = seconds(now_.time() - before);
+  if (step_s > 0) show(step_s * std::max(flow_speed_mps, withheld_m_.norm() / flow_time_s));
+  if (correction.isZero(0)) return;
+  withheld_m_ -= correction;
+  show(shown_at_once_m);
+  if (withheld_m_.norm() > longest_flow_m) withheld_m_.setZero();
+}
+
+bool Fusion::add(const InertialReading& reading, Timestamp time) {
+  if (restarted(time)) return false;
+  const bool late = now_.started() && time < now_.time();
+  const Timestamp before = now_.time();
+  const Eigen::Vector3d old = now_.motion().tracked_point_m();
+  bool fresh = true;
+  insert({time, reading}, fresh);
+  flow(before, late ? Eigen::Vector3d(now_.motion().tracked_point_m() - old) : Eigen::Vector3d::Zero());
+  return fresh;
+}
+
+FixResult Fusion::add(const Fix& fix, Timestamp time) {
+  const bool tracked = std::holds_alternative<PoseFix>(fix) || std::holds_alternative<PointFix>(fix);
+  const double lag_s = tracked ? now_.motion().lag_s : 0;
+  time -= std::chrono::duration_cast<Duration>(std::chrono::duration<double>(lag_s));
+  if (restarted(time)) return {FixOutcome::too_late};
+  const bool was_lost = now_.state() == FusionState::lost;
+  const Timestamp before = now_.time();
+  MotionFilter unfixed = now_;
+  if (unfixed.started()) unfixed.move_to(std::max(time, before));
+  bool fresh = true;
+  const FixResult result = insert({time, StampedFix{fix, lag_s}}, fresh);
+  if (was_lost) withheld_m_.setZero();
+  flow(before, was_lost
+                   ? Eigen::Vector3d::Zero()
+                   : Eigen::Vector3d(now_.motion().tracked_point_m() - unfixed.motion().tracked_point_m()));
+  return result;
+}
+
+FusedPose Fusion::pose() const {
+  const MotionState& motion = now_.motion();
+  FusedPose pose;
+  pose.time = now_.time();
+  pose.state = now_.state();
+  pose.placed = now_.placed();
+  pose.rate_radps = now_.rate_radps();
+  pose.velocity_mps = motion.velocity_mps + motion.world_from_sensor * pose.rate_radps.cross(motion.lever_m);
+  pose.point_m = motion.tracked_point_m() - inertial_delay(motion.lag_s) * pose.velocity_mps + withheld_m_;
+  pose.world_from_sensor = motion.world_from_sensor;
+  pose.covariance = motion.pose_covariance();
+  return pose;
+}
+
+}  // namespace fude

@@ -1,0 +1,78 @@
+// Samples of all sources, each at its own time and in whatever order they arrive, become one pose: a late one
+// is put where it belongs, and what came after it is taken again.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <variant>
+
+#include "calibration/fusion/motion_filter.h"
+#include "signal/timestamp.h"
+
+namespace fude {
+
+struct FusedPose {
+  Timestamp time{};
+  FusionState state = FusionState::lost;
+  bool placed = false;                                     // else the position says nothing
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();       // the tracked point, in the world
+  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();  // of it
+  Eigen::Quaterniond world_from_sensor = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();                          // in the sensor's frame
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // point m², turn rad²; world
+};
+
+struct LatenessCounts {
+  std::uint64_t late = 0;      // taken after a replay
+  std::uint64_t too_late = 0;  // dropped
+  std::uint64_t restarts = 0;  // a clock that began again
+};
+
+class Fusion {
+ public:
+  explicit Fusion(const FusionSettings& settings = {}, Duration kept = std::chrono::milliseconds(300));
+
+  // False: dropped (not finite, repeated, older than what is kept).
+  bool add(const InertialReading& reading, Timestamp time);
+  FixResult add(const Fix& fix, Timestamp time);
+
+  // At the newest sample. The position is continuous: what a fix corrects, a late one or one of another
+  // source too, flows in within 0.1 s, never as a jump, unless the position was lost.
+  FusedPose pose() const;
+
+  const MotionFilter& filter() const { return now_; }
+  const FusionCounts& counts() const { return now_.counts(); }
+  const LatenessCounts& lateness() const { return lateness_; }
+
+ private:
+  struct StampedFix {
+    Fix fix;
+    double assumed_lag_s = 0;
+  };
+  struct Event {
+    Timestamp time{};
+    std::variant<InertialReading, StampedFix> what;
+  };
+  struct Snapshot {
+    std::size_t events = 0;  // taken before it, counted from the first ever
+    MotionFilter filter;
+  };
+
+  FixResult take(const Event& event, bool& fresh);
+  FixResult insert(Event event, bool& fresh);
+  bool restarted(Timestamp time);
+  void forget_old();
+  void flow(Timestamp before, const Eigen::Vector3d& correction);
+
+  FusionSettings settings_;
+  Duration kept_;
+  std::deque<Event> events_;
+  std::size_t forgotten_ = 0;  // events before events_.front()
+  std::deque<Snapshot> snapshots_;
+  MotionFilter now_;
+  LatenessCounts lateness_;
+  int too_late_in_a_row_ = 0;
+  Eigen::Vector3d withheld_m_ = Eigen::Vector3d::Zero();  // of the corrections, not yet shown
+};
+
+}  // namespace fude
