@@ -2,11 +2,16 @@
 // the kernel's USB: what was sent is what was decoded, and what was left out is counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "drivers/falcon/haptic_loop.h"
+#include "drivers/falcon/message.h"
 #include "drivers/transport/hidraw_source.h"
 #include "drivers/transport/serial_source.h"
 #include "drivers/transport/usb_source.h"
@@ -189,6 +194,66 @@ TEST(FamilyOnTheWire, NovintFalcon) {
     EXPECT_TRUE(sample.force_n.isZero());
   }
   EXPECT_EQ(dialogue.again().size(), count);
+}
+
+// Driven by its loop, an arm is told the force that is wanted, and none from 20 ms after nobody wants it any
+// more; unplugged, it ends the loop.
+TEST(FamilyOnTheWire, NovintFalconDrivenByItsLoop) {
+  using namespace falcon;
+  constexpr unsigned count = 200;
+  std::unique_ptr<ScriptedDevice> arm;
+  const DeviceNode node = attached_node(NodeKind::usb, "0403:cb48:FALCON4", [&] {
+    arm = std::make_unique<ScriptedDevice>(UsbIdentity{0x0403, 0xcb48, "FALCON4", "FALCON HAPTIC"}, 2,
+                                           ScriptedInterface{0xff, {{in, true}, {out, true}}, {}},
+                                           [](const ScriptedRequest&) { return std::optional(Bytes{}); });
+  });
+  std::vector<ToArm> told;
+  std::thread device([&] {
+    while (const auto message = arm->receive(out)) {
+      if (const auto read = read_to_arm(*message)) told.push_back(*read);
+      Bytes answer = bytes({0x01, 0x60});
+      const Bytes state = write_from_arm({.homed = 7});
+      answer.insert(answer.end(), state.begin(), state.end());
+      if (!arm->send(in, answer)) return;
+    }
+  });
+  auto source = UsbSource::open(node.path, {0});
+  ASSERT_TRUE(source) << source.error().message;
+  MonotonicLoopClock clock;
+  FalconDecoder decoder({}, false);
+  std::optional<Eigen::Vector3d> wish = Eigen::Vector3d(0, 2, 0);
+  std::vector<ToArm> said;
+  bool heard_it_go = false;
+  HapticLoop loop(
+      **source, clock, decoder, [&](const HapticSample&) { return wish; },
+      [&](const Transfer& transfer, const Decoded&) {
+        heard_it_go = heard_it_go || transfer.kind == TransferKind::unplugged;
+        if (transfer.direction == Direction::from_device) return;
+        if (const auto message = read_to_arm(transfer.payload)) said.push_back(*message);
+      });
+  bool all = true;
+  const Timestamp end = patience();
+  while (all && loop.counts().samples < count && clock.now() < end) all = loop.step().has_value();
+  const auto with_force = [](const ToArm& m) { return m.motors != std::array<std::int16_t, 3>{}; };
+  const auto forces = std::ranges::count_if(said, with_force);
+  wish.reset();
+  const Timestamp gone_by = clock.now() + std::chrono::milliseconds(20);
+  while (all && clock.now() < gone_by) all = loop.step().has_value();
+  all = all && loop.step().has_value();
+  const ToArm last = said.back();
+  arm->unplug();
+  device.join();
+  ASSERT_TRUE(all);
+  while (loop.step()) continue;
+  EXPECT_TRUE(heard_it_go);
+  EXPECT_GE(loop.counts().samples, count);
+  EXPECT_GT(forces, 0);
+  EXPECT_FALSE(with_force(last));
+  EXPECT_EQ(decoder.counts().malformed, 0u);
+  // What the arm was told is what is recorded; of the last words some may not have come through.
+  ASSERT_GE(told.size(), count);
+  ASSERT_LE(told.size(), said.size());
+  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], said[i]) << i;
 }
 
 TEST(FamilyOnTheWire, UltrasonicBoard) {
