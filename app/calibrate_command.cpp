@@ -124,7 +124,7 @@ void add_calibrate(CLI::App& app, int& status) {
       app.add_subcommand("calibrate", "finds where the brush and the paper are, and how sure that is");
   std::vector<std::string> names(calibration_procedures().begin(), calibration_procedures().end());
   command->add_option("WHAT", wish.procedure, "what to find")->required()->check(CLI::IsMember(names));
-  command->add_option("SESSION", wish.session, "a .fude session of the motions that show it")->required();
+  command->add_option("SESSION", wish.session, "a .fude session of the motions that show it");
   command->add_option("--tool", wish.tool, "the tool of the tracker, where it has several");
   command->add_option("--reference", wish.reference, "the tool that stands for the tracker's frame");
   command->add_option("--cal", wish.earlier, "an earlier calibration (may be given several times)")
@@ -134,6 +134,10 @@ void add_calibrate(CLI::App& app, int& status) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--spin", options->spin, "pivot: a session in which the handle is spun about itself");
+  command->add_option("--landmarks", wish.landmarks,
+                      "tracker: a list of name,x,y,z in mm of the reference, touched in its order");
+  command->add_option("--measured", wish.measured,
+                      "tracker: the same points as the tracker has them, in mm, instead of touches");
   command->add_flag("--corners", wish.corners_first,
                     "surface: the first four touches are the paper's corners, lower left first, "
                     "counter-clockwise");

@@ -4,10 +4,13 @@
 #include <chrono>
 #include <ctime>
 
+#include "calibration/landmarks.h"
 #include "calibration/pivot.h"
 #include "calibration/surface.h"
+#include "calibration/touches.h"
 #include "capture/session.h"
 #include "rig/calibration_streams.h"
+#include "rig/landmark_file.h"
 #include "rig/session_identity.h"
 
 namespace fude {
@@ -72,12 +75,48 @@ Result<CalibrationOutcome> calibrate_surface(const Bench& bench) {
   return outcome_of(procedure.finish());
 }
 
+// Where the tip touched: each pose, where there are as many as landmarks; else where it rested.
+std::vector<Eigen::Vector3d> touched(const std::vector<PoseSample>& poses, const Eigen::Vector3d& tip_m,
+                                     std::size_t landmarks) {
+  std::vector<TipPoint> way;
+  for (const PoseSample& sample : poses)
+    if (sample.valid) way.push_back({sample.time.host, sample.tracker_from_tool * tip_m, way.size()});
+  if (way.size() != landmarks) way = resting_places(way);
+  std::vector<Eigen::Vector3d> points;
+  for (const TipPoint& touch : way) points.push_back(touch.point_m);
+  return points;
+}
+
+Result<CalibrationOutcome> calibrate_tracker(const Bench& bench) {
+  if (!bench.wish.landmarks)
+    return failure(Fault::usage,
+                   "tracker needs --landmarks FILE, a list of name,x,y,z in mm of the reference");
+  const auto listed = read_landmarks(*bench.wish.landmarks);
+  if (!listed) return tl::unexpected(listed.error());
+  std::vector<Eigen::Vector3d> points;
+  if (bench.wish.measured) {
+    const auto measured = read_landmarks(*bench.wish.measured);
+    if (!measured) return tl::unexpected(measured.error());
+    points = in_order_of(*listed, *measured);
+  } else {
+    const auto tip = tip_of(bench);
+    if (!tip) return tl::unexpected(tip.error());
+    const auto poses = tool_poses(bench.session, bench.wish.tool, bench.wish.reference);
+    if (!poses) return tl::unexpected(poses.error());
+    points = touched(*poses, *tip, listed->size());
+  }
+  LandmarkProcedure procedure(*listed);
+  bench.feed(procedure, points);
+  return outcome_of(procedure.finish());
+}
+
 using Calibrate = Result<CalibrationOutcome> (*)(const Bench&);
 struct NamedProcedure {
   std::string_view name;
   Calibrate calibrate;
 };
-constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot}, {"surface", calibrate_surface}};
+constexpr NamedProcedure procedures[] = {
+    {"pivot", calibrate_pivot}, {"surface", calibrate_surface}, {"tracker", calibrate_tracker}};
 
 std::string now_utc() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -123,7 +162,11 @@ Result<CalibrationOutcome> calibrate_session(const CalibrationWish& wish, const 
                                        [&](const NamedProcedure& p) { return p.name == wish.procedure; });
   if (procedure == std::end(procedures))
     return failure(Fault::usage, "there is no calibration '" + wish.procedure + "'");
-  const auto session = read_session(wish.session);
+  const bool from_lists = wish.measured && wish.session.empty();
+  if (!from_lists && wish.session.empty())
+    return failure(Fault::usage,
+                   "give the session of the motions: fude calibrate " + wish.procedure + " SESSION");
+  const auto session = from_lists ? Result<Session>(Session{}) : read_session(wish.session);
   if (!session) return tl::unexpected(session.error());
   std::vector<std::string> devices;
   for (const RecordedDevice& device : session->devices) devices.push_back(device.description.id);
@@ -138,7 +181,7 @@ Result<CalibrationOutcome> calibrate_session(const CalibrationWish& wish, const 
   if (!outcome) return outcome;
   outcome->report.date = now_utc();
   outcome->report.devices = devices;
-  outcome->report.session = session_identity(*session);
+  if (!from_lists) outcome->report.session = session_identity(*session);
   return outcome;
 }
 

@@ -17,14 +17,16 @@
 namespace fude {
 
 struct CalibrationWish {
-  std::string procedure;  // one of calibration_procedures()
-  std::filesystem::path session;
-  std::string tool;                            // empty: the only one
-  std::string reference;                       // empty: the tracker itself
-  std::optional<std::filesystem::path> spin;   // pivot: a session in which the handle is spun
-  std::vector<std::filesystem::path> earlier;  // calibrations that this one builds on
-  std::optional<Eigen::Vector3d> tip_m;        // instead of an earlier pivot
-  bool corners_first = false;                  // surface: the first four touches are the paper's corners
+  std::string procedure;                           // one of calibration_procedures()
+  std::filesystem::path session;                   // empty with `measured` alone
+  std::string tool;                                // empty: the only one
+  std::string reference;                           // empty: the tracker itself
+  std::optional<std::filesystem::path> spin;       // pivot: a session in which the handle is spun
+  std::vector<std::filesystem::path> earlier;      // calibrations that this one builds on
+  std::optional<Eigen::Vector3d> tip_m;            // instead of an earlier pivot
+  bool corners_first = false;                      // surface: the first four touches are the paper's corners
+  std::optional<std::filesystem::path> landmarks;  // tracker: the list of the reference
+  std::optional<std::filesystem::path> measured;   // tracker: as the tracker has them, instead of touches
 };
 
 struct CalibrationOutcome {

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "calibration/landmarks.h"
 #include "calibration/pivot.h"
 #include "capture/session_writer.h"
 #include "rig/import_session.h"
+#include "rig/landmark_file.h"
 #include "tests/fakes/recordings.h"
 #include "tests/fakes/scripted_tracker.h"
 
@@ -127,6 +129,56 @@ TEST_F(CalibrateSession, ASurfaceNeedsATip) {
       calibrate_session({.procedure = "surface", .session = recorded(ScriptedPivot{}.samples())}, {});
   ASSERT_FALSE(outcome);
   EXPECT_NE(outcome.error().message.find("--tip-mm"), std::string::npos);
+}
+
+class CalibrateTracker : public CalibrateSession {
+ protected:
+  fs::path listing(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  // A corner, and 100, 200 and 50 mm along the axes from it.
+  const std::string list_ = "name,x,y,z\no,0,0,0\nx, 100, 0, 0  # right\n\ny,0,200,0\nz,0,0,50\n";
+};
+
+TEST_F(CalibrateTracker, TwoListsGiveTheMotionWithoutASession) {
+  const auto outcome =
+      calibrate_session({.procedure = "tracker",
+                         .landmarks = listing("list.csv", list_),
+                         .measured = listing("measured.csv", "z,50,7,0\no,0,7,0\nx,0,107,0\ny,0,7,200\n")},
+                        {});
+  ASSERT_TRUE(outcome && outcome->result) << (outcome ? outcome->report.reason : outcome.error().message);
+  const auto r = registration_from(*outcome->result);
+  ASSERT_TRUE(r);
+  EXPECT_LT((*r * Eigen::Vector3d(0.01, 0.017, 0.03) - Eigen::Vector3d(0.01, 0.03, 0.01)).norm(), 1e-9);
+}
+
+TEST_F(CalibrateTracker, TouchesInTheOrderOfTheListGiveTheMotion) {
+  const Eigen::Vector3d tip(0, 0.1, 0);
+  const Eigen::Vector3d places[] = {{1, 2, 3}, {1, 2.1, 3}, {1, 2, 3.2}, {1.05, 2, 3}};
+  std::vector<PoseSample> samples;
+  for (const Eigen::Vector3d& place : places)
+    for (int i = 0; i < 20; ++i)
+      samples.push_back(
+          pose_sample({Eigen::Quaterniond::Identity(), place - tip}, 0.02 * double(samples.size())));
+  const auto outcome = calibrate_session({.procedure = "tracker",
+                                          .session = recorded(samples),
+                                          .tip_m = tip,
+                                          .landmarks = listing("list.csv", list_)},
+                                         {});
+  ASSERT_TRUE(outcome && outcome->result) << (outcome ? outcome->report.reason : outcome.error().message);
+  EXPECT_LT((*registration_from(*outcome->result) * places[2] - Eigen::Vector3d(0, 0.2, 0)).norm(), 1e-6);
+}
+
+TEST(LandmarkFile, NamesTheLineThatIsWrong) {
+  for (const auto& [text, line] :
+       {std::pair("a,1,2,3\nb,1,2\n", "line 2"), std::pair("a,1,2,nan\n", "line 1"),
+        std::pair("a,1,2,3\n\na,4,5,6\n", "line 3"), std::pair("a,1,2,3x\n", "line 1")}) {
+    const auto landmarks = landmarks_from(text, "list");
+    ASSERT_FALSE(landmarks) << text;
+    EXPECT_NE(landmarks.error().message.find(line), std::string::npos) << landmarks.error().message;
+  }
+  EXPECT_FALSE(landmarks_from("# nothing\n", "list"));
 }
 
 // A brush seen from a reference that is itself carried about.
