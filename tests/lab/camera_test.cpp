@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "capture/picture/frame_encoding.h"
+#include "capture/picture/picture_png.h"
 #include "drivers/transport/v4l2_source.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/replugs.h"
@@ -119,6 +121,26 @@ TEST(Camera, ItsNodeForDataAboutPicturesIsNoCamera) {
   const auto nodes = find_nodes(NodeKind::video);
   ASSERT_TRUE(nodes);
   EXPECT_EQ(nodes->size(), 1u);
+}
+
+// A real driver's bytes, with whatever it puts into them.
+TEST(Camera, EveryByteComesBackFromAPng) {
+  for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::grey}) {
+    CameraSettings settings = small;
+    settings.format = format;
+    const auto source = V4l2Source::open(camera(), settings);
+    ASSERT_TRUE(source) << source.error().message;
+    SessionRecording recording({});
+    ASSERT_TRUE(recording.drain_one(**source));
+    CameraFrame frame = (*source)->frame();
+    const auto png = encoded(recording.last().payload, frame, FrameEncoding::png);
+    ASSERT_TRUE(png) << png.error().message;
+    EXPECT_EQ(frame.format, PixelFormat::png);
+    const auto back = raw_from_png(*png);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->format, format);
+    EXPECT_EQ(back->bytes, recording.last().payload);
+  }
 }
 
 TEST(Camera, ControlsAreHeldWhereTheCameraHasThem) {
