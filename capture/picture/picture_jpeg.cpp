@@ -43,15 +43,17 @@ struct Planes {
   std::vector<unsigned char> y, u, v;
 };
 
-// In a row of odd width the last pair has no second luminance, and so no V.
+// In a row of odd width the last pair has no second luminance, and so no V; TurboJPEG takes whole pairs.
 Planes planes_of_yuyv(std::span<const std::byte> picture, std::size_t width, std::size_t height) {
   const std::size_t pairs = (width + 1) / 2;
-  Planes planes{std::vector<unsigned char>(width * height), std::vector<unsigned char>(pairs * height, 128),
+  Planes planes{std::vector<unsigned char>(2 * pairs * height),
+                std::vector<unsigned char>(pairs * height, 128),
                 std::vector<unsigned char>(pairs * height, 128)};
   for (std::size_t row = 0; row < height; ++row)
     for (std::size_t x = 0; x < width; ++x) {
       const std::byte* pixel = &picture[2 * (row * width + x)];
-      planes.y[row * width + x] = full_luminance(pixel[0]);
+      planes.y[2 * row * pairs + x] = full_luminance(pixel[0]);
+      if (x == width - 1 && x % 2 == 0) planes.y[2 * row * pairs + x + 1] = full_luminance(pixel[0]);
       (x % 2 == 0 ? planes.u : planes.v)[row * pairs + x / 2] = full_colour(pixel[1]);
     }
   return planes;
@@ -99,7 +101,8 @@ Result<std::vector<std::byte>> raw_to_jpeg(std::span<const std::byte> picture, P
   Planes planes;
   std::array<const unsigned char*, 3> starts{reinterpret_cast<const unsigned char*>(picture.data()), nullptr,
                                              nullptr};
-  std::array<int, 3> strides{width, (width + 1) / 2, (width + 1) / 2};
+  const int pairs = (width + 1) / 2;
+  const std::array<int, 3> strides{grey ? width : 2 * pairs, pairs, pairs};
   if (!grey) {
     planes = planes_of_yuyv(picture, columns, rows);
     starts = {planes.y.data(), planes.u.data(), planes.v.data()};
