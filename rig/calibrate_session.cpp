@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "calibration/imu.h"
 #include "calibration/landmarks.h"
 #include "calibration/pivot.h"
 #include "calibration/surface.h"
@@ -110,13 +111,23 @@ Result<CalibrationOutcome> calibrate_tracker(const Bench& bench) {
   return outcome_of(procedure.finish());
 }
 
+Result<CalibrationOutcome> calibrate_imu(const Bench& bench) {
+  const auto samples = imu_samples(bench.session, bench.wish.tool);
+  if (!samples) return tl::unexpected(samples.error());
+  ImuProcedure procedure;
+  bench.feed(procedure, *samples);
+  return outcome_of(procedure.finish());
+}
+
 using Calibrate = Result<CalibrationOutcome> (*)(const Bench&);
 struct NamedProcedure {
   std::string_view name;
   Calibrate calibrate;
 };
-constexpr NamedProcedure procedures[] = {
-    {"pivot", calibrate_pivot}, {"surface", calibrate_surface}, {"tracker", calibrate_tracker}};
+constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot},
+                                         {"surface", calibrate_surface},
+                                         {"tracker", calibrate_tracker},
+                                         {"imu", calibrate_imu}};
 
 std::string now_utc() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

@@ -61,4 +61,18 @@ Result<std::vector<PoseSample>> tool_poses(const Session& session, const std::st
   return poses;
 }
 
+Result<std::vector<ImuSample>> imu_samples(const Session& session, const std::string& unit) {
+  const auto stream = find_stream(session, unit.empty() ? "imu" : unit);
+  if (!stream) return tl::unexpected(stream.error());
+  std::vector<ImuSample> samples;
+  for (std::size_t i = 0; i < stream->samples.size(); ++i)
+    if (const Sample sample = sample_at(session, *stream, i);
+        const auto* imu = std::get_if<ImuSample>(&sample))
+      samples.push_back(*imu);
+  if (samples.empty())
+    return failure(Fault::not_found,
+                   stream->name + " holds no readings of an inertial unit; name one with --tool");
+  return samples;
+}
+
 }  // namespace fude

@@ -1,10 +1,12 @@
-// What a calibration hears of a session: the poses of a tool, as they are or as seen from another tool.
+// What a calibration hears of a session: the poses of a tool, as they are or as seen from another
+// tool; the readings of an inertial unit.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "capture/session.h"
+#include "signal/imu_sample.h"
 #include "signal/pose_sample.h"
 #include "signal/result.h"
 
@@ -16,5 +18,8 @@ namespace fude {
 // Errors: not_found, naming the tools that are there.
 Result<std::vector<PoseSample>> tool_poses(const Session& session, const std::string& tool,
                                            const std::string& reference);
+
+// Of the stream of that name, or, without one, of the only inertial unit. Errors: not_found.
+Result<std::vector<ImuSample>> imu_samples(const Session& session, const std::string& unit);
 
 }  // namespace fude
