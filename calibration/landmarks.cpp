@@ -210,8 +210,7 @@ Calibration<TrackerRegistration> LandmarkProcedure::finish() const {
   report.detail("scale", scaled.scale);
   report.detail("scaled_rms_mm", scaled_rms);
 
-  const double noticeable = std::max(fair_rms_mm, 0.0);
-  if (plain_rms > noticeable) {
+  if (plain_rms > fair_rms_mm) {
     if (std::abs(scaled.scale - 1) > 0.3 && explains * scaled_rms < plain_rms)
       return refusal(report,
                      "a scale of " + in_words(scaled.scale, 3) + " would fit: " + unit_of(scaled.scale));
