@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/painting_options.h"
+#include "calibration/fusion/bench_fusion.h"
 #include "rig/bench_haptic.h"
 #include "rig/bench_pipeline.h"
 #include "rig/bench_record.h"
@@ -205,6 +206,22 @@ void add_record_bench(CLI::App& bench, int& status) {
   });
 }
 
+void add_fusion(CLI::App& bench, int& status) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command = bench.add_subcommand("fusion", "inertial samples, positions, late ones");
+  command->add_flag("--json", *json, "as JSON");
+  command->callback([json, &status] {
+    status = 0;
+    const FusionBench b = bench_fusion();
+    print(Json{{"ns_per_orientation", b.ns_per_orientation},
+               {"ns_per_inertial", b.ns_per_inertial},
+               {"ns_per_position", b.ns_per_position},
+               {"us_per_late", b.us_per_late},
+               {"core_share", b.core_share}},
+          *json);
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
@@ -212,6 +229,7 @@ void add_bench(CLI::App& app, int& status) {
   bench->require_subcommand(1);
   add_ink(*bench, status);
   add_brush(*bench, status);
+  add_fusion(*bench, status);
   add_pipeline(*bench, status);
   add_haptic(*bench, status);
   add_record_bench(*bench, status);

@@ -18,6 +18,7 @@ void add_demo(CLI::App& fude, int& status);
 void add_devices(CLI::App& fude, int& status);
 void add_doctor(CLI::App& fude, int& status);
 void add_export(CLI::App& fude, int& status);
+void add_fuse(CLI::App& fude, int& status);
 void add_import(CLI::App& fude, int& status);
 void add_info(CLI::App& fude, int& status);
 void add_monitor(CLI::App& fude, int& status);

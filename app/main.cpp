@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   fude::add_demo(app, status);
   fude::add_replay(app, status);
+  fude::add_fuse(app, status);
   fude::add_import(app, status);
   fude::add_export(app, status);
   fude::add_perform(app, status);

@@ -1,0 +1,24 @@
+// What a session's calibrations say of where things sit on the brush and in the room, as far as fusion needs
+// it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "capture/session.h"
+#include "signal/result.h"
+
+namespace fude {
+
+struct FuseGeometry {
+  std::optional<Eigen::Vector3d> tip_m;      // in the sensor's frame
+  std::optional<Eigen::Vector3d> emitter_m;  // of the ultrasonic emitter, likewise
+  std::vector<Eigen::Vector3d> receivers_m;  // in the world
+};
+
+// From the keys tip_m, emitter_m ([x, y, z]) and receivers_m (an array of such) of the calibrations that the
+// session carries; a later one goes before. Errors: malformed.
+Result<FuseGeometry> fuse_geometry(const Session& session);
+
+}  // namespace fude

@@ -1,0 +1,168 @@
+#include "rig/fuse_session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "rig/import_session.h"
+#include "tests/calibration/fusion/inertial_recording.h"
+#include "tests/calibration/fusion/simulated_hand.h"
+
+namespace fude {
+namespace {
+
+constexpr double step_s = 0.004;
+
+// A simulated hand: an inertial unit as device 1, and a tracker with its poses as device 2.
+Session session_of(const SimulatedHand& hand, const std::string& tracker_id) {
+  Session session;
+  session.devices.push_back({1, {.id = "0001:0001:", .name = "imu", .kind = DeviceKind::imu}});
+  session.devices.push_back({2, {.id = tracker_id, .name = "optical", .kind = DeviceKind::tracker}});
+  for (int i = 1; i <= 2500; ++i) {
+    const double t = i * step_s;
+    const InertialReading r = hand.reading(t, step_s);
+    ImuSample imu{.time = {.host = at_second(t)},
+                  .turn_rate_radps = r.turn_rate_radps,
+                  .specific_force_mps2 = r.specific_force_mps2,
+                  .magnetic_field_ut = r.magnetic_field_ut};
+    session.samples.push_back({1, imu, 0});
+    if (i % 5 != 0) continue;
+    PoseSample pose{.time = {.host = at_second(t)}, .tool = "sensor"};
+    pose.tracker_from_tool = {hand.rotation(t), hand.position(t)};
+    session.samples.push_back({2, pose, 0});
+  }
+  return session;
+}
+
+std::set<FuseSource> named(const char* names) { return fuse_sources(names).value(); }
+
+TEST(FuseSession, NamesOfSources) {
+  EXPECT_EQ(named("imu,opt_pose"),
+            (std::set{FuseSource::gyro, FuseSource::accel, FuseSource::mag, FuseSource::opt_pose}));
+  EXPECT_EQ(fuse_sources("imu,odour").error().fault, Fault::usage);
+  EXPECT_EQ(fuse_sources("").error().fault, Fault::usage);
+}
+
+TEST(FuseSession, TruthIsUsedOnlyWhereItIsNamed) {
+  const Session session = session_of({}, "text:imu-csv");
+  const auto alone = fuse_session(session, {});
+  ASSERT_TRUE(alone.has_value()) << alone.error().message;
+  ASSERT_EQ(alone->rows.size(), 2500U);
+  for (const FusedRow& row : alone->rows) EXPECT_FALSE(row.position_m.has_value());
+  const auto with = fuse_session(session, {.use = named("imu,opt_position")});
+  ASSERT_TRUE(with.has_value()) << with.error().message;
+  ASSERT_EQ(with->rows.size(), 2500U);
+  EXPECT_EQ(with->rows.back().state, FusionState::ok);
+  EXPECT_LT((with->rows.back().position_m.value() - SimulatedHand{}.position(10)).norm(), 2e-3);
+}
+
+TEST(FuseSession, PosesOfATrackerAreUsedByThemselves) {
+  const SimulatedHand hand;
+  for (const char* use : {"imu,pose", "pose", "position"}) {
+    for (const bool smooth : {false, true}) {
+      const auto fused = fuse_session(session_of(hand, "0002:0001:"), {.use = named(use), .smooth = smooth});
+      ASSERT_TRUE(fused.has_value()) << fused.error().message;
+      EXPECT_EQ(fused->rows.size(), std::string(use) == "imu,pose" ? 2500U : 500U);
+      const FusedRow& row = fused->rows[fused->rows.size() * 3 / 4 - 1];
+      const double t = seconds(row.time.time_since_epoch());
+      ASSERT_TRUE(row.position_m.has_value());
+      EXPECT_LT((*row.position_m - hand.position(t)).norm(), 3e-3) << use << smooth;
+      EXPECT_GT(row.variance.minCoeff(), 0);
+    }
+  }
+}
+
+TEST(FuseSession, WhatIsNotThereIsSaid) {
+  const Session session = session_of({}, "text:imu-csv");
+  EXPECT_EQ(fuse_session(session, {.use = named("range")}).error().fault, Fault::usage);
+  EXPECT_EQ(fuse_session(session, {.use = named("pose")}).error().fault, Fault::usage);
+  EXPECT_EQ(fuse_session(session, {.use = named("gyro,mag")}).error().fault, Fault::usage);
+  EXPECT_EQ(fuse_session(session, {.use = named("gyro,opt_pose")}).error().fault, Fault::usage);
+  EXPECT_EQ(fuse_session(Session{}, {}).error().fault, Fault::not_found);
+}
+
+TEST(FuseSession, GyroAloneTurnsFromWhereItStood) {
+  SimulatedHand hand;
+  hand.gyro_bias_radps.setZero();
+  const auto fused = fuse_session(session_of(hand, "text:imu-csv"), {.use = named("gyro")});
+  ASSERT_TRUE(fused.has_value());
+  const Eigen::Quaterniond turned = hand.rotation(step_s).conjugate() * hand.rotation(10);
+  EXPECT_LT(fused->rows.back().world_from_sensor->angularDistance(turned), 1e-6);
+}
+
+TEST(FuseSession, TheTable) {
+  const auto fused = fuse_session(session_of({}, "text:imu-csv"), {.use = named("imu")});
+  std::istringstream lines(csv_of(*fused));
+  std::string header, first;
+  std::getline(lines, header);
+  std::getline(lines, first);
+  EXPECT_EQ(header, "t_s,x_m,y_m,z_m,qw,qx,qy,qz,var_0,var_1,var_2,var_3,var_4,var_5,state");
+  EXPECT_EQ(first.substr(0, 15), "0.004000000,,,,");
+  EXPECT_EQ(std::count(first.begin(), first.end(), ','), 14);
+  EXPECT_EQ(first.substr(first.size() - 3), ",OK");
+}
+
+TEST(FuseSession, TipAndReceiversComeFromTheSessionsCalibration) {
+  const SimulatedHand hand;
+  Session session = session_of(hand, "text:imu-csv");
+  session.devices.push_back({3, {.id = "0003:0001:", .name = "ears", .kind = DeviceKind::ultrasonic}});
+  session.calibrations.push_back(
+      {"ears",
+       "emitter_m = [0.01, 0.0, 0.1]\n"
+       "receivers_m = [[-0.1, 0.0, 0.5], [0.4, 0.0, 0.5], [0.4, 0.45, 0.5], [-0.1, 0.45, 0.45]]\n"});
+  const std::array receivers{Eigen::Vector3d(-0.1, 0, 0.5), Eigen::Vector3d(0.4, 0, 0.5),
+                             Eigen::Vector3d(0.4, 0.45, 0.5), Eigen::Vector3d(-0.1, 0.45, 0.45)};
+  const std::vector<RecordedSample> before = session.samples;
+  session.samples.clear();
+  for (const RecordedSample& sample : before) {
+    session.samples.push_back(sample);
+    const auto* imu = std::get_if<ImuSample>(&sample.sample);
+    if (imu == nullptr) continue;
+    const double t = seconds(imu->time.host.time_since_epoch());
+    RangeSample range{.time = imu->time, .receivers = 4, .temperature_c = 20};
+    for (std::size_t i = 0; i < 4; ++i)
+      range.flight_s[i] =
+          (hand.position(t) + hand.rotation(t) * Eigen::Vector3d(0.01, 0, 0.1) - receivers[i]).norm() /
+          (331.3 + 0.606 * 20);
+    session.samples.push_back({3, range, 0});
+  }
+  const auto fused = fuse_session(session, {.use = named("gyro,accel,range")});
+  ASSERT_TRUE(fused.has_value()) << fused.error().message;
+  EXPECT_LT((fused->rows.back().position_m.value() - hand.position(10)).norm(), 3e-3);
+  session.calibrations.front().toml = "emitter_m = [";
+  EXPECT_EQ(fuse_session(session, {}).error().fault, Fault::malformed);
+}
+
+TEST(FuseSession, AnImportedRecording) {
+  const std::string name = optical_recordings[0];
+  REQUIRE_RECORDING(name);
+  const auto file = std::filesystem::path(testing::TempDir()) / "fuse-imported.fude";
+  ASSERT_TRUE(import_session(recordings() / name, file, {.overwrite = true}).has_value());
+  const auto session = read_session(file);
+  ASSERT_TRUE(session.has_value());
+  const InertialRecording truth = read_inertial_recording(name);
+  const auto begin = std::chrono::steady_clock::now();
+  for (const char* use : {"imu", "gyro,accel", "imu,opt_position", "imu,opt_pose"}) {
+    const auto fused = fuse_session(*session, {.use = named(use)});
+    ASSERT_TRUE(fused.has_value()) << fused.error().message;
+    ASSERT_EQ(fused->rows.size(), truth.truth.size());
+    OrientationError error;
+    for (std::size_t i = 0; i < truth.truth.size(); ++i) {
+      ASSERT_EQ(fused->rows[i].time, truth.imu[i].time.host);
+      if (truth.truth[i].valid && truth.imu[i].buttons != 0)
+        error.add(*fused->rows[i].world_from_sensor, truth.truth[i].tracker_from_tool.rotation);
+    }
+    std::printf("figure: %s by %s: total %.3f inclination %.3f deg\n", name.c_str(), use, error.total(),
+                error.inclination());
+    EXPECT_LT(error.inclination(), 1);
+  }
+  std::printf("figure: four fusions of 90 s in %.2f s\n",
+              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+}  // namespace
+}  // namespace fude
