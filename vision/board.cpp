@@ -1,0 +1,155 @@
+#include "vision/board.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace fude {
+namespace {
+
+struct NamedDictionary {
+  const char* name;
+  cv::aruco::PREDEFINED_DICTIONARY_NAME number;
+};
+constexpr std::array dictionaries{
+    NamedDictionary{"DICT_4X4_50", cv::aruco::DICT_4X4_50},
+    NamedDictionary{"DICT_4X4_100", cv::aruco::DICT_4X4_100},
+    NamedDictionary{"DICT_4X4_250", cv::aruco::DICT_4X4_250},
+    NamedDictionary{"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
+    NamedDictionary{"DICT_5X5_50", cv::aruco::DICT_5X5_50},
+    NamedDictionary{"DICT_5X5_100", cv::aruco::DICT_5X5_100},
+    NamedDictionary{"DICT_5X5_250", cv::aruco::DICT_5X5_250},
+    NamedDictionary{"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
+    NamedDictionary{"DICT_6X6_50", cv::aruco::DICT_6X6_50},
+    NamedDictionary{"DICT_6X6_100", cv::aruco::DICT_6X6_100},
+    NamedDictionary{"DICT_6X6_250", cv::aruco::DICT_6X6_250},
+    NamedDictionary{"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
+};
+
+constexpr int fewest_corners = 6;  // a pose has six numbers; with four there is nothing to judge it by
+constexpr int most_corners = 100;  // a side
+// A corner's place is sought in a window of half this size, in shares of the way to the nearest other corner:
+// farther out stand the edges of other squares.
+constexpr double window_share = 0.25;
+
+const NamedDictionary* find_dictionary(const std::string& name) {
+  const auto* found = std::find_if(dictionaries.begin(), dictionaries.end(),
+                                   [&](const NamedDictionary& d) { return name == d.name; });
+  return found == dictionaries.end() ? nullptr : found;
+}
+
+cv::Mat seen(const GreyImage& image) {
+  return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+double nearest_neighbours_px(const std::vector<cv::Point2f>& corners) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (std::size_t j = i + 1; j < corners.size(); ++j)
+      least = std::min(least, cv::norm(corners[i] - corners[j]));
+  return least;
+}
+
+void refine(const cv::Mat& picture, std::vector<cv::Point2f>& corners) {
+  const double reach = window_share * nearest_neighbours_px(corners);
+  if (!(reach >= 2)) return;
+  constexpr int steps = 100;
+  constexpr double step_px = 1e-4;
+  const int half = static_cast<int>(reach);
+  cv::cornerSubPix(picture, corners, {half, half}, {-1, -1},
+                   cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, steps, step_px));
+}
+
+bool on_one_line(const Board& board, const std::vector<int>& corners) {
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const int a : corners) {
+    const Eigen::Vector2d way = corner_place_m(board, a) - corner_place_m(board, corners.front());
+    scatter += way * way.transpose() / (board.square_m * board.square_m);
+  }
+  return scatter.determinant() < 0.5;  // a single corner beside the line gives 1
+}
+
+std::vector<cv::Point2f> chessboard_corners(const cv::Mat& picture, const Board& board) {
+  std::vector<cv::Point2f> corners;
+  constexpr int how = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  if (!cv::findChessboardCorners(picture, {board.columns, board.rows}, corners, how)) corners.clear();
+  return corners;
+}
+
+std::vector<cv::Point2f> charuco_corners(const cv::Mat& picture, const Board& board,
+                                         std::vector<int>& numbers) {
+  const auto dictionary = cv::aruco::getPredefinedDictionary(find_dictionary(board.dictionary)->number);
+  const auto charuco =
+      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m),
+                                      static_cast<float>(board.marker_m), dictionary);
+  std::vector<std::vector<cv::Point2f>> markers;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(picture, dictionary, markers, ids);
+  std::vector<cv::Point2f> corners;
+  if (!ids.empty()) cv::aruco::interpolateCornersCharuco(markers, ids, picture, charuco, corners, numbers);
+  return corners;
+}
+
+}  // namespace
+
+Result<void> check(const Board& board) {
+  const int least = board.kind == BoardKind::chessboard ? 3 : 2;
+  if (board.columns < least || board.rows < least || board.columns > most_corners ||
+      board.rows > most_corners)
+    return failure(Fault::usage, "a board has " + std::to_string(least) + " to " +
+                                     std::to_string(most_corners) + " columns and rows");
+  if (!(board.square_m > 0) || !(board.square_m < 1))
+    return failure(Fault::usage, "a board's squares have a side between 0 and 1000 mm");
+  if (board.kind == BoardKind::chessboard) return {};
+  if (!(board.marker_m > 0) || !(board.marker_m < board.square_m))
+    return failure(Fault::usage, "a ChArUco's markers are smaller than its squares");
+  if (const NamedDictionary* found = find_dictionary(board.dictionary)) {
+    const int markers = board.columns * board.rows / 2;
+    const int there = cv::aruco::getPredefinedDictionary(found->number)->bytesList.rows;
+    if (markers <= there) return {};
+    return failure(Fault::usage, board.dictionary + " has " + std::to_string(there) + " markers, the board " +
+                                     std::to_string(markers));
+  }
+  std::string names;
+  for (const NamedDictionary& d : dictionaries) names += std::string(names.empty() ? "" : ", ") + d.name;
+  return failure(Fault::usage, "'" + board.dictionary + "' is no dictionary; take one of " + names);
+}
+
+int corners_of(const Board& board) {
+  return board.kind == BoardKind::chessboard ? board.columns * board.rows
+                                             : (board.columns - 1) * (board.rows - 1);
+}
+
+Eigen::Vector2d corner_place_m(const Board& board, int number) {
+  const int across = board.kind == BoardKind::chessboard ? board.columns : board.columns - 1;
+  return board.square_m * Eigen::Vector2d(number % across, number / across);
+}
+
+std::optional<BoardView> find_board(const GreyImage& image, const Board& board) {
+  if (image.width < 16 || image.height < 16) return std::nullopt;
+  const cv::Mat picture = seen(image);
+  BoardView view;
+  std::vector<cv::Point2f> corners;
+  try {
+    if (board.kind == BoardKind::chessboard) {
+      corners = chessboard_corners(picture, board);
+      for (int i = 0; i < static_cast<int>(corners.size()); ++i) view.corners.push_back(i);
+    } else {
+      corners = charuco_corners(picture, board, view.corners);
+    }
+    if (static_cast<int>(corners.size()) < fewest_corners || on_one_line(board, view.corners))
+      return std::nullopt;
+    refine(picture, corners);
+  } catch (const cv::Exception&) {
+    return std::nullopt;  // OpenCV's own checks of what a hostile picture showed
+  }
+  for (const cv::Point2f& corner : corners) view.pixels.emplace_back(corner.x, corner.y);
+  return view;
+}
+
+}  // namespace fude
