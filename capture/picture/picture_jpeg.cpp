@@ -59,10 +59,8 @@ Planes planes_of_yuyv(std::span<const std::byte> picture, std::size_t width, std
   return planes;
 }
 
-}  // namespace
-
-Result<std::vector<std::byte>> jpeg_to_rgb(std::span<const std::byte> jpeg, std::int32_t width,
-                                           std::int32_t height) {
+Result<std::vector<std::byte>> decompressed(std::span<const std::byte> jpeg, std::int32_t width,
+                                            std::int32_t height, TJPF form) {
   const Handle handle(tjInitDecompress());
   if (!handle) return tl::unexpected(no_memory());
   const auto* bytes = reinterpret_cast<const unsigned char*>(jpeg.data());
@@ -74,13 +72,26 @@ Result<std::vector<std::byte>> jpeg_to_rgb(std::span<const std::byte> jpeg, std:
     return failure(Fault::malformed, "a JPEG of " + std::to_string(columns) + " x " + std::to_string(rows) +
                                          " came where one of " + std::to_string(width) + " x " +
                                          std::to_string(height) + " was due");
-  std::vector<std::byte> pixels(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  std::vector<std::byte> pixels(static_cast<std::size_t>(tjPixelSize[form]) *
+                                static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   // A warning is a picture with a hole in it.
   if (tjDecompress2(handle.get(), bytes, jpeg.size(), reinterpret_cast<unsigned char*>(pixels.data()),
-                    columns, 0, rows, TJPF_RGB,
+                    columns, 0, rows, form,
                     TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
     return failure(Fault::malformed, "this JPEG is damaged");
   return pixels;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> jpeg_to_rgb(std::span<const std::byte> jpeg, std::int32_t width,
+                                           std::int32_t height) {
+  return decompressed(jpeg, width, height, TJPF_RGB);
+}
+
+Result<std::vector<std::byte>> jpeg_to_grey(std::span<const std::byte> jpeg, std::int32_t width,
+                                            std::int32_t height) {
+  return decompressed(jpeg, width, height, TJPF_GRAY);
 }
 
 Result<std::vector<std::byte>> raw_to_jpeg(std::span<const std::byte> picture, PixelFormat format,

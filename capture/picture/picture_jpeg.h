@@ -16,6 +16,10 @@ namespace fude {
 Result<std::vector<std::byte>> jpeg_to_rgb(std::span<const std::byte> jpeg, std::int32_t width,
                                            std::int32_t height);
 
+// The same as luminance, one byte a pixel.
+Result<std::vector<std::byte>> jpeg_to_grey(std::span<const std::byte> jpeg, std::int32_t width,
+                                            std::int32_t height);
+
 // Grey, or yuyv of limited range (ITU-R BT.601, as V4L2 has it), scaled to the full range that a JPEG has;
 // its colours keep their resolution (4:2:2). Errors: malformed where `picture` has not the size of that
 // format; unsupported for another format.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "capture/picture/frame_encoding.h"
+#include "capture/picture/grey_picture.h"
 #include "capture/picture/picture_jpeg.h"
 #include "capture/picture/picture_png.h"
 
@@ -233,6 +234,49 @@ TEST(FrameEncoding, ADamagedPictureIsRefusedAndItsFrameStaysAsItWas) {
   CameraFrame frame = frame_of(PixelFormat::mjpeg, {32, 16});
   EXPECT_EQ(encoded(jpeg, frame, FrameEncoding::png).error().fault, Fault::malformed);
   EXPECT_EQ(frame, frame_of(PixelFormat::mjpeg, {32, 16}));
+}
+
+// Luminance comes out as it went in, in whatever form the picture was kept.
+TEST(GreyPicture, OfEveryFormIsTheLuminance) {
+  const Size size{64, 48};
+  const Bytes yuyv = smooth_yuyv(size);
+  Bytes luminance;
+  for (std::size_t i = 0; i < yuyv.size(); i += 2) luminance.push_back(yuyv[i]);
+  const auto pixels = [&](const Bytes& picture, PixelFormat format) {
+    const auto grey = grey_picture(picture, frame_of(format, size));
+    EXPECT_TRUE(grey) << grey.error().message;
+    Bytes bytes;
+    if (grey)
+      for (const std::uint8_t p : grey->pixels) bytes.push_back(std::byte{p});
+    return bytes;
+  };
+  EXPECT_EQ(pixels(yuyv, PixelFormat::yuyv), luminance);
+  EXPECT_EQ(pixels(luminance, PixelFormat::grey), luminance);
+  EXPECT_EQ(pixels(*raw_to_png(yuyv, PixelFormat::yuyv, 64, 48), PixelFormat::png), luminance);
+  EXPECT_EQ(pixels(*raw_to_png(luminance, PixelFormat::grey, 64, 48), PixelFormat::png), luminance);
+  Bytes rgb;
+  for (const std::byte y : luminance) rgb.insert(rgb.end(), {y, y, y});
+  const Bytes from_rgb = pixels(*rgb_to_png(rgb, 64, 48), PixelFormat::png);
+  const Bytes from_jpeg = pixels(*raw_to_jpeg(luminance, PixelFormat::grey, 64, 48), PixelFormat::mjpeg);
+  ASSERT_EQ(from_rgb.size(), luminance.size());
+  ASSERT_EQ(from_jpeg.size(), luminance.size());
+  for (std::size_t i = 0; i < luminance.size(); ++i) {
+    EXPECT_NEAR(std::to_integer<int>(from_rgb[i]), std::to_integer<int>(luminance[i]), 1);
+    EXPECT_NEAR(std::to_integer<int>(from_jpeg[i]), std::to_integer<int>(luminance[i]), 4);
+  }
+}
+
+TEST(GreyPicture, OfAnotherSizeOrNoPictureIsRefused) {
+  const Bytes bytes = noise(64);
+  for (const PixelFormat format :
+       {PixelFormat::grey, PixelFormat::yuyv, PixelFormat::png, PixelFormat::mjpeg})
+    for (const Size size : {Size{9, 9}, Size{0, 0}, Size{-8, -8}, Size{2'000'000, 2'000'000}}) {
+      const auto grey = grey_picture(bytes, frame_of(format, size));
+      ASSERT_FALSE(grey);
+      EXPECT_EQ(grey.error().fault, Fault::malformed);
+    }
+  const auto png = rgb_to_png(noise(3 * 30), 6, 5);
+  EXPECT_FALSE(grey_picture(*png, frame_of(PixelFormat::png, {5, 6})));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "capture/picture/frame_encoding.h"
+#include "capture/picture/grey_picture.h"
 #include "capture/picture/picture_png.h"
 
 using namespace fude;
@@ -24,5 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     CameraFrame kept = frame;
     (void)encoded(bytes.subspan(3), kept, wish);
   }
+  if (const auto grey = grey_picture(bytes.subspan(3), frame);
+      grey && grey->pixels.size() != std::size_t{data[1]} * data[2])
+    std::abort();
   return 0;
 }
