@@ -19,6 +19,9 @@ struct Options {
   CalibrationWish wish;
   std::vector<double> tip_mm;
   std::string spin, out, report;
+  std::string board = "chessboard";
+  double square_mm = 25;
+  double marker_mm = 0;  // 0: three quarters of a square
   bool force = false, json = false;
 };
 
@@ -92,6 +95,10 @@ Result<void> run(Options& options) {
   for (const std::string& file : {options.out, options.report})
     if (auto free = may_write(file, options.force); !free) return free;
   if (!options.spin.empty()) options.wish.spin = options.spin;
+  Board& board = options.wish.board;
+  board.kind = options.board == "charuco" ? BoardKind::charuco : BoardKind::chessboard;
+  board.square_m = 1e-3 * options.square_mm;
+  board.marker_m = options.marker_mm > 0 ? 1e-3 * options.marker_mm : 0.75 * board.square_m;
   if (!options.tip_mm.empty()) options.wish.tip_m = 1e-3 * Eigen::Vector3d(options.tip_mm.data());
   auto outcome = [&] {
     const ProgressLine line("calibrating");
@@ -141,6 +148,14 @@ void add_calibrate(CLI::App& app, int& status) {
   command->add_flag("--corners", wish.corners_first,
                     "surface: the first four touches are the paper's corners, lower left first, "
                     "counter-clockwise");
+  command->add_option("--board", options->board, "camera: what it saw")
+      ->check(CLI::IsMember({"chessboard", "charuco"}));
+  command->add_option("--columns", wish.board.columns, "inner corners of a chessboard, squares of a ChArUco");
+  command->add_option("--rows", wish.board.rows, "likewise");
+  command->add_option("--square-mm", options->square_mm, "the side of a square, as printed");
+  command->add_option("--marker-mm", options->marker_mm,
+                      "the side of a ChArUco's marker; 0: three quarters of a square");
+  command->add_option("--dictionary", wish.board.dictionary, "of a ChArUco's markers, as OpenCV names it");
   command->add_option("--out", options->out, "the calibration to write (TOML)");
   command->add_option("--report", options->report, "the report to write (JSON), also where it is refused");
   command->add_flag("--json", options->json, "the report on the terminal");

@@ -10,6 +10,7 @@
 #include "calibration/surface.h"
 #include "calibration/touches.h"
 #include "capture/session.h"
+#include "rig/calibrate_camera.h"
 #include "rig/calibration_streams.h"
 #include "rig/landmark_file.h"
 #include "rig/session_identity.h"
@@ -119,15 +120,25 @@ Result<CalibrationOutcome> calibrate_imu(const Bench& bench) {
   return outcome_of(procedure.finish());
 }
 
+#ifdef FUDE_VISION
+Result<CalibrationOutcome> calibrate_board(const Bench& bench) {
+  return calibrate_camera(bench.session, bench.wish.tool, bench.wish.board, bench.on_progress);
+}
+#endif
+
 using Calibrate = Result<CalibrationOutcome> (*)(const Bench&);
 struct NamedProcedure {
   std::string_view name;
   Calibrate calibrate;
 };
-constexpr NamedProcedure procedures[] = {{"pivot", calibrate_pivot},
-                                         {"surface", calibrate_surface},
-                                         {"tracker", calibrate_tracker},
-                                         {"imu", calibrate_imu}};
+constexpr NamedProcedure procedures[] = {
+#ifdef FUDE_VISION
+    {"camera", calibrate_board},
+#endif
+    {"pivot", calibrate_pivot},
+    {"surface", calibrate_surface},
+    {"tracker", calibrate_tracker},
+    {"imu", calibrate_imu}};
 
 std::string now_utc() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

@@ -13,6 +13,7 @@
 #include "calibration/report.h"
 #include "rig/calibration_file.h"
 #include "signal/result.h"
+#include "vision/board.h"
 
 namespace fude {
 
@@ -27,6 +28,7 @@ struct CalibrationWish {
   bool corners_first = false;                      // surface: the first four touches are the paper's corners
   std::optional<std::filesystem::path> landmarks;  // tracker: the list of the reference
   std::optional<std::filesystem::path> measured;   // tracker: as the tracker has them, instead of touches
+  Board board;                                     // camera: what it sees
 };
 
 struct CalibrationOutcome {

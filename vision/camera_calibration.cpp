@@ -12,7 +12,9 @@ namespace fude {
 namespace {
 
 constexpr std::size_t fewest_views = 5;
-constexpr int cells_across = 6;  // of the coverage map
+constexpr std::size_t most_views = 60;
+constexpr double alike_share = 0.02;  // of the board's length in the picture that its corners have moved
+constexpr int cells_across = 6;       // of the coverage map
 constexpr int cells_down = 5;
 constexpr double least_coverage = 0.5;
 constexpr double least_tilt_rad = 15 * 3.14159265358979 / 180;
@@ -160,6 +162,19 @@ double largest_tilt(const std::vector<FittedView>& views) {
   return largest;
 }
 
+bool alike(const BoardView& a, const BoardView& b) {
+  const double length = (a.pixels.back() - a.pixels.front()).norm();
+  double moved = 0;
+  int common = 0;
+  for (std::size_t i = 0; i < a.corners.size(); ++i) {
+    const auto at = std::ranges::find(b.corners, a.corners[i]);
+    if (at == b.corners.end()) continue;
+    moved += (a.pixels[i] - b.pixels[static_cast<std::size_t>(at - b.corners.begin())]).norm();
+    ++common;
+  }
+  return common > 0 && moved < alike_share * length * common;
+}
+
 std::string formatted(const char* format, double value) {
   char text[200];
   std::snprintf(text, sizeof text, format, value);
@@ -180,11 +195,14 @@ CameraProcedure::Progress CameraProcedure::add(const GreyImage& image, const std
   }
   std::optional<BoardView> view;
   if (image.width == width_ && image.height == height_) view = find_board(image, board_);
-  if (view) {
+  if (!view) {
+    boardless_.push_back(name);
+  } else if (views_.size() == most_views ||
+             std::ranges::any_of(views_, [&](const BoardView& v) { return alike(v, *view); })) {
+    ++alike_;
+  } else {
     view->name = name;
     views_.push_back(std::move(*view));
-  } else {
-    boardless_.push_back(name);
   }
   Progress progress;
   progress.views = views_.size();
@@ -206,6 +224,7 @@ CameraProcedure::Progress CameraProcedure::add(const GreyImage& image, const std
 CameraCalibration CameraProcedure::finish() const {
   CameraCalibration result;
   result.boardless = boardless_;
+  result.alike = alike_;
   const auto refused = [&result](std::string reason) {
     result.reason = std::move(reason);
     return result;

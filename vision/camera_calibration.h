@@ -31,6 +31,7 @@ struct CameraCalibration {
   Eigen::Vector2d centre_deviation_px = Eigen::Vector2d::Zero();
   std::vector<FittedView> views;
   std::vector<std::string> boardless;  // pictures in which no board was found
+  std::size_t alike = 0;               // views passed over
   std::vector<double> residuals_px;    // distances, over the corners used
   double held_out_rms_px = 0;          // of views that a fit of the others did not see; corners as distances
   double coverage = 0;                 // share of the picture, in cells, where corners were
@@ -53,7 +54,8 @@ class CameraProcedure {
   static Result<CameraProcedure> begin(const Board& board);
 
   // Any picture, with the board or without; `name` stands for it in the report. All are of the size of the
-  // first: others count as boardless.
+  // first: others count as boardless. A view that hardly differs from one before tells nothing new and is
+  // passed over, as are all beyond 60: a film gives thousands.
   Progress add(const GreyImage& image, const std::string& name);
 
   // Refused (accepted false, and why): fewer than 5 views of the board, less than half of the picture
@@ -69,6 +71,7 @@ class CameraProcedure {
   std::int32_t height_ = 0;
   std::vector<BoardView> views_;
   std::vector<std::string> boardless_;
+  std::size_t alike_ = 0;
 };
 
 }  // namespace fude

@@ -126,10 +126,19 @@ TEST(CameraCalibration, PoorPicturesAreRefusedWithTheCause) {
 
   std::vector<Pose<Camera, BoardFrame>> small;
   for (const double lean : {-0.5, -0.3, 0.0, 0.3, 0.5})
-    small.push_back(held({-0.2, -0.15, 0.9}, lean, -lean));
+    small.push_back(held({-0.16, -0.12, 0.75 + 0.1 * lean}, lean, -lean));
   const CameraCalibration cornered = calibrated(small);
   EXPECT_FALSE(cornered.accepted);
   EXPECT_NE(cornered.reason.find("of the picture only"), std::string::npos) << cornered.reason;
+}
+
+// A film of a board at rest is one view.
+TEST(CameraCalibration, AViewLikeOneBeforeAddsNothing) {
+  auto procedure = CameraProcedure::begin(board());
+  const RenderedCamera camera(truth());
+  for (int i = 0; i < 4; ++i) procedure->add(camera.picture(board(), ways()[0]), name_of(0));
+  EXPECT_EQ(procedure->add(camera.picture(board(), ways()[1]), name_of(1)).views, 2u);
+  EXPECT_EQ(procedure->finish().alike, 3u);
 }
 
 TEST(CameraCalibration, PicturesWithoutABoardAreCountedAndHarmless) {
