@@ -18,12 +18,18 @@ constexpr Duration attendance = std::chrono::milliseconds(100);
 struct Options {
   PoseServers::Doors doors;
   std::vector<std::string> named;
+  bool fuse = false;
+  std::vector<double> up{0, 0, 1};
   double seconds = 0;  // 0: until Ctrl-C
 };
 
 int serve(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  PoseRelay::Wish wish{.doors = options.doors, .named = {}};
+  PoseRelay::Wish wish{.doors = options.doors, .named = {}, .fused_with_up = std::nullopt};
+  if (options.fuse) {
+    wish.fused_with_up = Eigen::Vector3d(options.up.data());
+    if (!(wish.fused_with_up->norm() > 0)) return report({Fault::usage, "--up needs a direction, as 0,0,1"});
+  }
   for (const std::string& name : options.named) {
     auto device = named_device(name);
     if (!device) return report(device.error());
@@ -62,6 +68,11 @@ void add_serve(CLI::App& app, int& status) {
   command->add_option("--add", options->named,
                       "a tracker that is not found by itself: fastrak:/dev/ttyS0@115200, "
                       "openigtlink:HOST:PORT, vrpn:HOST …; may be given again");
+  command->add_flag("--fuse", options->fuse,
+                    "the first tool together with the first inertial unit, as one more tool: fused");
+  command->add_option("--up", options->up, "x,y,z of up in the tracker's frame, for --fuse")
+      ->delimiter(',')
+      ->expected(3);
   command->add_option("--listen", options->doors.address,
                       "the address that others reach: 0.0.0.0 for every network of this machine");
   command->add_option("--openigtlink-port", options->doors.openigtlink, "0: a free one");

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "calibration/fusion/smoother.h"
+#include "rig/fix_of.h"
 #include "rig/fuse_geometry.h"
 
 namespace fude {
@@ -23,8 +24,6 @@ constexpr std::array<std::pair<std::string_view, FuseSource>, 9> source_names{{
     {"opt_pose", FuseSource::opt_pose},
     {"opt_position", FuseSource::opt_position},
 }};
-
-constexpr double position_sigma_m = 1e-3, turn_sigma_rad = 1e-2;  // of trackers that state none
 
 // A tracker that stands for the truth of an inertial recording: never used unless named.
 bool is_truth(const DeviceDescription& device) {
@@ -77,29 +76,15 @@ class Collection {
 
   void take(DeviceNumber device, const PoseSample& sample) {
     if (!sample.valid || !mine(device, sample.tool)) return;
-    const Eigen::Vector3d at = sample.tracker_from_tool.translation;
-    PoseFix pose{.point_m = at, .world_from_sensor = sample.tracker_from_tool.rotation};
-    if (sample.covariance) {
-      pose.covariance.topLeftCorner<3, 3>() = sample.covariance->bottomRightCorner<3, 3>();
-      pose.covariance.bottomRightCorner<3, 3>() = sample.covariance->topLeftCorner<3, 3>();
-      pose.covariance.topRightCorner<3, 3>() = sample.covariance->bottomLeftCorner<3, 3>();
-      pose.covariance.bottomLeftCorner<3, 3>() = sample.covariance->topRightCorner<3, 3>();
-    } else {
-      pose.covariance.diagonal().head<3>().setConstant(position_sigma_m * position_sigma_m);
-      pose.covariance.diagonal().tail<3>().setConstant(turn_sigma_rad * turn_sigma_rad);
-    }
+    const PoseFix pose = fix_of(sample);
     const bool truth = truth_[device];
     keep(truth ? FuseSource::opt_pose : FuseSource::pose, sample.time.host, pose);
-    keep(truth ? FuseSource::opt_position : FuseSource::position, sample.time.host,
-         PointFix{.point_m = at, .covariance_m2 = pose.covariance.topLeftCorner<3, 3>()});
+    keep(truth ? FuseSource::opt_position : FuseSource::position, sample.time.host, point_of(pose));
   }
 
   void take(DeviceNumber device, const PositionSample& sample) {
     if (!sample.valid || !mine(device, sample.marker)) return;
-    const Eigen::Matrix3d covariance =
-        sample.covariance_m2.value_or(Eigen::Matrix3d::Identity() * position_sigma_m * position_sigma_m);
-    keep(truth_[device] ? FuseSource::opt_position : FuseSource::position, sample.time.host,
-         PointFix{.point_m = sample.tracker_from_marker_m, .covariance_m2 = covariance});
+    keep(truth_[device] ? FuseSource::opt_position : FuseSource::position, sample.time.host, fix_of(sample));
   }
 
   void take(DeviceNumber, const RangeSample& sample) {
@@ -208,24 +193,12 @@ FusedSession orientation_alone(const std::vector<Taken>& samples, const std::set
   return fused;
 }
 
-FusionSettings settings_for(const std::set<FuseSource>& use, bool inertial, const FuseWish& wish) {
-  FusionSettings settings;
-  settings.noise.gravity_mps2 = -9.81 * wish.up.normalized();
-  settings.world_from_earth = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), wish.up);
-  // Where north lies in a tracker's frame nobody knows; the truth's frame is earth.
-  const bool earth = use.contains(FuseSource::opt_pose) || use.contains(FuseSource::opt_position);
-  settings.use_field = earth && use.contains(FuseSource::mag);
-  if (inertial) {
-    settings.lever_sigma_m = 0.05;
-    settings.lag_sigma_s = 0.01;
-  }
-  return settings;
-}
-
 FusedSession fuse(const std::vector<Taken>& samples, const std::set<FuseSource>& use, bool inertial,
                   const FuseWish& wish) {
   FusedSession fused;
-  const FusionSettings settings = settings_for(use, inertial, wish);
+  // Where north lies in a tracker's frame nobody knows; the truth's frame is earth.
+  const bool earth = use.contains(FuseSource::opt_pose) || use.contains(FuseSource::opt_position);
+  const FusionSettings settings = fusion_settings(wish.up, inertial, earth && use.contains(FuseSource::mag));
   Fusion fusion(settings);
   std::vector<FusionInput> inputs;
   for (const Taken& sample : samples) {

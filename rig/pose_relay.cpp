@@ -1,10 +1,16 @@
 #include "rig/pose_relay.h"
 
+#include <limits>
 #include <variant>
 
 #include "capture/sample_columns.h"
 
 namespace fude {
+namespace {
+
+constexpr std::size_t of_the_rig = std::numeric_limits<std::size_t>::max();  // of no single device
+
+}  // namespace
 
 Result<std::unique_ptr<PoseRelay>> PoseRelay::open(Wish wish, std::function<void(const std::string&)> warn) {
   std::unique_ptr<PoseRelay> relay(new PoseRelay(wish.doors));
@@ -21,8 +27,10 @@ Result<std::unique_ptr<PoseRelay>> PoseRelay::open(Wish wish, std::function<void
   };
   listener.refused = [warn](const Error& error) { warn(error.message); };
   DevicesWish devices;
-  devices.wanted = [](const AttachedDevice& device) {
-    return device.description.kind == DeviceKind::tracker;
+  if (wish.fused_with_up) relay->fusion_.emplace(*wish.fused_with_up);
+  devices.wanted = [fused = wish.fused_with_up.has_value()](const AttachedDevice& device) {
+    const DeviceKind kind = device.description.kind;
+    return kind == DeviceKind::tracker || (fused && kind == DeviceKind::imu);
   };
   devices.named = std::move(wish.named);
   auto opened = Devices::open(std::move(listener), std::move(devices));
@@ -54,14 +62,20 @@ std::size_t PoseRelay::tool_of(std::size_t device, const Sample& sample) {
 void PoseRelay::hear(std::size_t device, std::span<const Sample> samples) {
   const std::lock_guard lock(mutex_);
   for (const Sample& sample : samples) {
-    const auto give = [&](const auto& seen) {
-      const std::size_t tool = tool_of(device, sample);
-      servers_.send(tool, seen);
-      relayed_[tool].given += seen.valid;
-    };
-    if (const auto* pose = std::get_if<PoseSample>(&sample)) give(*pose);
-    if (const auto* position = std::get_if<PositionSample>(&sample)) give(*position);
+    give(device, sample);
+    if (!fusion_) continue;
+    if (const auto fused = fusion_->add(device, sample)) give(of_the_rig, *fused);
   }
+}
+
+void PoseRelay::give(std::size_t device, const Sample& sample) {
+  const auto serve = [&](const auto& seen) {
+    const std::size_t tool = tool_of(device, sample);
+    servers_.send(tool, seen);
+    relayed_[tool].given += seen.valid;
+  };
+  if (const auto* pose = std::get_if<PoseSample>(&sample)) serve(*pose);
+  if (const auto* position = std::get_if<PositionSample>(&sample)) serve(*position);
 }
 
 }  // namespace fude

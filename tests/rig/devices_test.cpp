@@ -183,7 +183,8 @@ TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
   seen.tracker_from_tool = {Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(0.25, -0.5, 1)};
   const std::size_t brush = tracker.add("brush");
 
-  PoseRelay::Wish wish{.doors = {.openigtlink = 0, .vrpn = 0}, .named = {}};
+  PoseRelay::Wish wish{
+      .doors = {.openigtlink = 0, .vrpn = 0}, .named = {}, .fused_with_up = Eigen::Vector3d::UnitZ()};
   wish.named.push_back(*named_device("vrpn:127.0.0.1:" + std::to_string(tracker.vrpn()->port())));
   const auto relay = PoseRelay::open(std::move(wish), [](const std::string&) {});
   ASSERT_TRUE(relay) << relay.error().message;
@@ -207,8 +208,10 @@ TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
   EXPECT_EQ(given.tool, "brush");
   EXPECT_LT((given.tracker_from_tool.translation - seen.tracker_from_tool.translation).norm(), 1e-7);
   EXPECT_LT(given.tracker_from_tool.rotation.angularDistance(seen.tracker_from_tool.rotation), 1e-6);
-  ASSERT_EQ((*relay)->relayed().size(), 1u);
-  EXPECT_GE((*relay)->relayed()[0].given, 1u);
+  // By itself, and as what is fused of it.
+  ASSERT_EQ((*relay)->relayed().size(), 2u);
+  EXPECT_EQ((*relay)->relayed()[1].name, "fused");
+  for (const PoseRelay::Relayed& tool : (*relay)->relayed()) EXPECT_GE(tool.given, 1u);
 }
 
 // The whole dialogue with an arm is in the session, and decodes to what was felt: no force, for nobody
