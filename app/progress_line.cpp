@@ -18,4 +18,9 @@ void ProgressLine::show(double share) const {
   if (on_terminal_) std::fprintf(stderr, "\r%s %3.0f %%", what_.c_str(), 100 * share);
 }
 
+void ProgressLine::show(std::uint64_t count, const char* of) const {
+  if (on_terminal_)
+    std::fprintf(stderr, "\r%s %llu %s", what_.c_str(), static_cast<unsigned long long>(count), of);
+}
+
 }  // namespace fude

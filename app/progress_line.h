@@ -1,6 +1,7 @@
 // Progress of long work: a line on a terminal, nothing in a pipe.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace fude {
@@ -10,6 +11,7 @@ class ProgressLine {
   explicit ProgressLine(std::string what);
   ~ProgressLine();
   void show(double share) const;  // 0 to 1
+  void show(std::uint64_t count, const char* of) const;
 
  private:
   std::string what_;

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -10,7 +11,9 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/progress_line.h"
 #include "capture/session_words.h"
+#include "drivers/transport/waker.h"
 #include "rig/named_device.h"
 #include "rig/record_session.h"
 
@@ -103,6 +106,20 @@ CameraSettings camera_settings(const Options& options) {
   return camera;
 }
 
+// Until `limit_s` is over (0: never) or Ctrl-C, which gives true.
+bool stand(InterruptWatch& interrupt, const RecordingSession& recording, double limit_s) {
+  constexpr Duration between_looks = std::chrono::milliseconds(200);
+  const Timestamp start = monotonic_now();
+  const ProgressLine line("recorded");
+  for (;;) {
+    const double left_s = limit_s > 0 ? limit_s - seconds(monotonic_now() - start) : 1e9;
+    if (left_s <= 0) return false;
+    const auto left = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(left_s));
+    if (interrupt.wait(std::min(left, between_looks))) return true;
+    line.show(recording.samples(), "samples");
+  }
+}
+
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
   RecordingWish wish{.overwrite = options.force,
@@ -119,10 +136,7 @@ int record(const Options& options) {
   });
   if (!recording) return report(recording.error());
   std::fprintf(stderr, "recording into %s; Ctrl-C ends it\n", options.out.c_str());
-  const auto limit = options.seconds > 0 ? std::optional(std::chrono::duration_cast<Duration>(
-                                               std::chrono::duration<double>(options.seconds)))
-                                         : std::nullopt;
-  const bool interrupted = interrupt.wait(limit);
+  const bool interrupted = stand(interrupt, **recording, options.seconds);
   const auto streams = (*recording)->finish();
   if (!streams) return report(streams.error());
   for (const RecordedStream& stream : *streams) {

@@ -61,7 +61,6 @@ constexpr FamilyRow rows[] = {
     {Family::polhemus, "liberty", DeviceKind::tracker, "serial", 0, 0xff12, {}, "LIBERTY"},
 #define FALCON_MODEL(product, name, force_n, motor_counts_per_nm, motor_limit_counts, middle_m) \
   {Family::falcon, "falcon", DeviceKind::haptic, "usb", ftdi_vendor, product, {}, name},
-#include "drivers/camera/camera_decoder.h"
 #include "drivers/falcon/models.inl"
 #undef FALCON_MODEL
     {Family::openigtlink, "openigtlink", DeviceKind::tracker, "network", 0, 0, {}, "OpenIGTLink"},

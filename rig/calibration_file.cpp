@@ -117,10 +117,14 @@ std::string toml_of(const StoredCalibration& calibration) {
   for (const Field& field : calibration.result) text += line(field);
   text += "\n[report]\naccepted = ";
   text += r.accepted ? "true\n" : "false\n";
-  std::vector<Field> fields{
-      {"reason", r.reason}, {"to_frame", r.to_frame}, {"from_frame", r.from_frame},
-      {"unit", r.unit},     {"rms", r.rms},           {"rms_per_coordinate", r.rms_per_coordinate},
-      {"p95", r.p95},       {"max", r.max},           {"n", double(r.n)}};
+  std::vector<Field> fields{{"reason", r.reason},
+                            {"to_frame", r.to_frame},
+                            {"from_frame", r.from_frame},
+                            {"unit", r.unit},
+                            {"rms", r.rms},
+                            {"rms_per_coordinate", r.rms_per_coordinate},
+                            {"p95", r.p95},
+                            {"max", r.max}};
   if (r.held_out_rms) fields.push_back({"held_out_rms", *r.held_out_rms});
   if (r.ci95) fields.push_back({"ci95", std::vector{(*r.ci95)[0], (*r.ci95)[1]}});
   if (r.condition) fields.push_back({"condition", *r.condition});
@@ -129,6 +133,7 @@ std::string toml_of(const StoredCalibration& calibration) {
   fields.push_back({"devices", r.devices});
   fields.push_back({"session", r.session});
   for (const Field& field : fields) text += line(field);
+  text += "n = " + std::to_string(r.n) + "\n";
   text += "\n[report.details]\n";
   for (const Field& field : r.details) text += line(field);
   return text;

@@ -91,6 +91,7 @@ void RecordingSession::keep(std::size_t device, const Transfer& transfer, std::s
   }
   if (!samples.empty()) stream->meter.decoded_after(monotonic_now() - transfer.time);
   for (const Sample& sample : samples) stream->meter.add(time_of(sample), after_gap(sample));
+  samples_ += samples.size();
   if (stream->frames) {
     const auto* frame = samples.empty() ? nullptr : std::get_if<CameraFrame>(&samples.front());
     stream->frames->add(transfer, frame ? std::optional(*frame) : std::nullopt);

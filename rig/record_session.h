@@ -1,6 +1,7 @@
 // A session recorded from every device that is plugged in.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -46,6 +47,9 @@ class RecordingSession {
                                                          RecordingWish wish,
                                                          std::function<void(const std::string&)> warn);
 
+  // Of all devices so far; any thread.
+  std::uint64_t samples() const { return samples_; }
+
   // Ends and closes the session. Errors: those of the disk; what was written before is kept.
   Result<std::vector<RecordedStream>> finish();
 
@@ -65,6 +69,7 @@ class RecordingSession {
   FrameEncoding frames_;
   std::mutex mutex_;  // of the list, not of its streams: each is its reader's
   std::vector<std::unique_ptr<Stream>> streams_;
+  std::atomic<std::uint64_t> samples_{0};
   std::unique_ptr<Devices> devices_;
 };
 

@@ -124,24 +124,25 @@ MockTablet::MockTablet(UMockdevTestbed* testbed, const DeviceDescription& device
   node_ = "/dev/input/" + event;
   const std::string input = "/devices/mock/input/input" + std::to_string(number);
   syspath_ = "/sys" + input + "/" + event;
+  // The parent first: who is told of the node looks there who it is.
   const std::string entry =
-      "P: " + input + "/" + event + "\nN: input/" + event + "\nE: DEVNAME=/dev/input/" + event +
-      "\nE: SUBSYSTEM=input\nE: ID_SERIAL_SHORT=" + "FROMUDEV\nA: dev=13:" + std::to_string(64 + number) +
-      "\n\nP: " + input + "\nE: SUBSYSTEM=input\nA: name=" + device.name + "\nA: uniq=" + device.serial +
+      "P: " + input + "\nE: SUBSYSTEM=input\nA: name=" + device.name + "\nA: uniq=" + device.serial +
       "\nA: id/bustype=" + four_digits(device.bus) + "\nA: id/vendor=" + four_digits(device.vendor) +
       "\nA: id/product=" + four_digits(device.product) + "\nA: id/version=" + four_digits(device.version) +
       "\nA: capabilities/key=" + words(key_mask(device.keys)) +
-      "\nA: capabilities/abs=" + words(abs_mask(device)) + "\n\n";
+      "\nA: capabilities/abs=" + words(abs_mask(device)) + "\n\nP: " + input + "/" + event + "\nN: input/" +
+      event + "\nE: DEVNAME=/dev/input/" + event +
+      "\nE: SUBSYSTEM=input\nE: ID_SERIAL_SHORT=" + "FROMUDEV\nA: dev=13:" + std::to_string(64 + number) +
+      "\n\n";
   GError* error = nullptr;
-  check(umockdev_testbed_add_from_string(testbed, entry.c_str(), &error), error, "add_from_string");
-
   const std::filesystem::path answers =
       std::filesystem::temp_directory_path() / ("fude-ioctl-" + std::to_string(getpid()));
   std::ofstream(answers) << ioctl_answers(device, node_, held);
   check(umockdev_testbed_load_ioctl(testbed, node_.c_str(), answers.c_str(), &error), error, "load_ioctl");
   std::filesystem::remove(answers);
+  // Last, for it is told at once, and who opens the node then asks.
+  check(umockdev_testbed_add_from_string(testbed, entry.c_str(), &error), error, "add_from_string");
   port_ = umockdev_testbed_get_dev_fd(testbed, node_.c_str());
-  umockdev_testbed_uevent(testbed, syspath_.c_str(), "add");  // told before, when it could not answer yet
 }
 
 void MockTablet::send(std::span<const EvdevEvent> events) {

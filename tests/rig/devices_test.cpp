@@ -147,22 +147,26 @@ TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
   MockTablet tablet(testbed_.get(), pen("1"), 5);
   auto recording = RecordingSession::start(file, {}, [](const std::string&) {});
   ASSERT_TRUE(recording) << recording.error().message;
+  // One at a time: umockdev's pipe holds 4 kB.
+  const auto heard = [&](std::uint64_t count) {
+    return heard_.until([&] { return (*recording)->samples() >= count; });
+  };
   for (int i = 1; i <= 50; ++i) {
     draw(tablet, i);
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));  // umockdev's pipe holds 4 kB
+    ASSERT_TRUE(heard(static_cast<std::uint64_t>(i)));
   }
   const EvdevEvent drop[] = {{EV_ABS, ABS_X, 51}, {EV_SYN, SYN_DROPPED, 0}, {EV_SYN, SYN_REPORT, 0}};
   tablet.send(drop);
-  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  ASSERT_TRUE(heard(51));  // what the kernel was asked after the drop
   draw(tablet, 60);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_TRUE(heard(52));
   const auto streams = (*recording)->finish();
   ASSERT_TRUE(streams) << streams.error().message;
   ASSERT_EQ(streams->size(), 1u);
   EXPECT_EQ(streams->at(0).expected, streams->at(0).received + streams->at(0).dropped);
   EXPECT_EQ(streams->at(0).dropped, 1);
   EXPECT_EQ(streams->at(0).figures.gaps, 1);
-  EXPECT_EQ(streams->at(0).received, 52);  // 51 drawn and what the kernel was asked after the drop
+  EXPECT_EQ(streams->at(0).received, 52);
 
   const auto session = read_session(file);
   ASSERT_TRUE(session) << session.error().message;
