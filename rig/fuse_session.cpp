@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "calibration/fusion/smoother.h"
+#include "drivers/ultrasonic/multilateration.h"
 #include "rig/fix_of.h"
 #include "rig/fuse_geometry.h"
 
@@ -89,7 +90,7 @@ class Collection {
 
   void take(DeviceNumber, const RangeSample& sample) {
     if (!geometry_.emitter_m) return;
-    const double speed = 331.3 + 0.606 * sample.temperature_c.value_or(20);  // of sound, m/s
+    const double speed = ultrasonic::speed_of_sound_mps(sample.temperature_c.value_or(20));
     for (std::size_t i = 0; i < std::min(geometry_.receivers_m.size(), sample.flight_s.size()); ++i)
       if (sample.flight_s[i])
         keep(FuseSource::range, sample.time.host,

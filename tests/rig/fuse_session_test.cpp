@@ -127,7 +127,7 @@ TEST(FuseSession, TipAndReceiversComeFromTheSessionsCalibration) {
     for (std::size_t i = 0; i < 4; ++i)
       range.flight_s[i] =
           (hand.position(t) + hand.rotation(t) * Eigen::Vector3d(0.01, 0, 0.1) - receivers[i]).norm() /
-          (331.3 + 0.606 * 20);
+          343.21;  // m/s at 20 degrees
     session.samples.push_back({3, range, 0});
   }
   const auto fused = fuse_session(session, {.use = named("gyro,accel,range")});
