@@ -148,6 +148,12 @@ class TableOf {
     return *this;
   }
 
+  // Of the column added last.
+  TableOf& since(int format) {
+    table_.columns.back().since_format = format;
+    return *this;
+  }
+
   // name_x_suffix, name_y_suffix, name_z_suffix of a vector; of an optional one all three or none.
   template <class Access>
   TableOf& vector(const std::string& name, const std::string& suffix, const std::string& unit,
@@ -241,7 +247,7 @@ SampleTable position() {
 
 SampleTable range() {
   TableOf<RangeSample> table("range");
-  table("receivers", "", FIELD(receivers));
+  table("emitter", "", FIELD(emitter)).since(3)("receivers", "", FIELD(receivers));
   for (std::size_t i = 0; i < most_receivers; ++i)
     table(
         "flight_" + std::to_string(i) + "_s", "s", [i](auto& s) -> auto& { return s.flight_s[i]; })(

@@ -26,6 +26,7 @@ struct SampleColumn {
   std::function<Cell(const Sample&)> get;
   // False for a cell that the value cannot hold: another type, a number out of range, an unknown word.
   std::function<bool(Sample&, const Cell&)> set;
+  int since_format = 1;  // of the session file; an older one has no such column
 };
 
 struct SampleTable {

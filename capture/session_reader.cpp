@@ -178,11 +178,13 @@ Result<void> read_samples(Database& db, int format, Session& session) {
     auto r = each(db, sql + " ORDER BY input", [&](const Statement& s) -> Result<void> {
       Sample sample = table.blank;
       int at = 2;
-      for (const SampleColumn& column : table.columns)
+      for (const SampleColumn& column : table.columns) {
+        if (column.since_format > format) continue;
         if (const Cell cell = cell_at(s, at++, column.type); !column.set(sample, cell))
           return failure(Fault::malformed,
                          db.path().string() + " holds in " + table.name + "." + column.name +
                              " what cannot stand there; it is damaged or comes from a newer fude");
+      }
       if (pens) {
         RecordedPen pen{s.integer(0), s.integer(1), std::get<PenSample>(std::move(sample)), std::nullopt};
         if (!s.is_null(at)) pen.applied = s.integer(at);

@@ -47,14 +47,16 @@ std::string_view word(CellType type) {
 
 }  // namespace
 
-std::string create(const SampleTable& table) {
+std::string create(const SampleTable& table, int of_format) {
   std::string sql = "CREATE TABLE " + table.name + "(input INTEGER PRIMARY KEY, device INTEGER NOT NULL";
-  for (const SampleColumn& column : table.columns)
+  for (const SampleColumn& column : table.columns) {
+    if (column.since_format > of_format) continue;
     sql.append(", ")
         .append(column.name)
         .append(" ")
         .append(word(column.type))
         .append(column.optional ? "" : " NOT NULL");
+  }
   return sql + ")";
 }
 
@@ -71,7 +73,7 @@ std::vector<std::string> tables(int of_format) {
   all.push_back(std::string(device_columns) + (pens_alone ? "" : clock) + ")");
   all.push_back(std::string(transfer_columns) + (pens_alone ? "" : ", endpoint INTEGER NOT NULL") + ")");
   for (const SampleTable& table : sample_tables())
-    if (!pens_alone || table.stream == "pen") all.push_back(create(table));
+    if (!pens_alone || table.stream == "pen") all.push_back(create(table, of_format));
   if (!pens_alone) all.insert(all.end(), std::begin(tables_since_2), std::end(tables_since_2));
   return all;
 }

@@ -30,6 +30,7 @@ std::optional<Pulse> read_pulse(Bytes packet) {
   if (pulse.receivers > most_receivers ||
       packet.size() != head_length + pulse.receivers * receiver_length + 2)
     return std::nullopt;
+  pulse.emitter = octet(packet, 11);
   pulse.sequence = little_endian<std::uint16_t>(packet, 2);
   pulse.tick_us = little_endian<std::uint32_t>(packet, 4);
   const auto hundredths = little_endian<std::int16_t>(packet, 8);
@@ -69,7 +70,7 @@ std::vector<std::byte> write_pulse(const Pulse& pulse) {
                                 ? static_cast<std::int16_t>(std::lround(*pulse.temperature_c * 100))
                                 : no_temperature);
   packet.push_back(static_cast<std::byte>(pulse.receivers));
-  packet.push_back(std::byte{0});
+  packet.push_back(static_cast<std::byte>(pulse.emitter));
   for (std::size_t i = 0; i < pulse.receivers; ++i) {
     put_little_endian(packet, pulse.flight_ns[i].value_or(not_heard));
     put_little_endian(packet, pulse.amplitude[i]);

@@ -22,6 +22,7 @@ struct Pulse {
   std::uint16_t sequence = 0;
   std::uint32_t tick_us = 0;  // when the pulse left
   std::optional<double> temperature_c;
+  std::uint8_t emitter = 0;
   std::uint8_t receivers = 0;
   std::array<std::optional<std::uint32_t>, most_receivers> flight_ns{};
   std::array<std::uint16_t, most_receivers> amplitude{};  // of 65535

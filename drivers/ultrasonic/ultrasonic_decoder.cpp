@@ -70,6 +70,7 @@ void UltrasonicDecoder::take_pulse(const Pulse& pulse, const Transfer& transfer,
   counts_.lost += place.lost;
   RangeSample sample;
   sample.time = {transfer.time, transfer.stamped_by, place.sequence, place.tick_us};
+  sample.emitter = pulse.emitter;
   sample.receivers = pulse.receivers;
   for (std::size_t i = 0; i < pulse.receivers; ++i) {
     if (pulse.flight_ns[i]) sample.flight_s[i] = *pulse.flight_ns[i] * 1e-9;

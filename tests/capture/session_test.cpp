@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "capture/database.h"
+#include "capture/session_schema.h"
 #include "capture/session_writer.h"
 
 namespace fude {
@@ -191,6 +192,25 @@ TEST_F(SessionFile, AnotherFormatIsNamed) {
   ASSERT_FALSE(in.has_value());
   EXPECT_EQ(in.error().fault, Fault::unsupported);
   EXPECT_NE(in.error().message.find("format 9"), std::string::npos);
+}
+
+TEST_F(SessionFile, RangesOfFormat2ComeFromTheFirstEmitter) {
+  {
+    Database db = Database::open(path(), OpenMode::create).value();
+    for (const std::string& table : session_schema::tables(2)) ASSERT_TRUE(db.run(table));
+    ASSERT_TRUE(db.run("PRAGMA application_id=" + std::to_string(session_schema::application_id)));
+    ASSERT_TRUE(db.run("PRAGMA user_version=2"));
+    ASSERT_TRUE(db.run("INSERT INTO range_sample(input, device, time_ns, stamped_by, sequence, receivers, "
+                       "flight_0_s, amplitude_0, amplitude_1, amplitude_2, amplitude_3, amplitude_4, "
+                       "amplitude_5, amplitude_6, amplitude_7, after_gap) "
+                       "VALUES(1, 1, 5, 'arrival', 7, 2, 0.001, 0.5, 0, 0, 0, 0, 0, 0, 0, 0)"));
+  }
+  const auto in = read_session(path());
+  ASSERT_TRUE(in.has_value()) << in.error().message;
+  const auto& range = std::get<RangeSample>(in->samples.at(0).sample);
+  EXPECT_EQ(range.emitter, 0);
+  EXPECT_EQ(range.receivers, 2);
+  EXPECT_EQ(range.flight_s[0], 0.001);
 }
 
 TEST_F(SessionFile, AReadOnlyFileOpens) {

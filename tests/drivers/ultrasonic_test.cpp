@@ -63,6 +63,16 @@ TEST(UltrasonicPackets, AreTheBytesOfTheSpecification) {
   EXPECT_EQ(write_command(PacketKind::start), from_hex("01 11 2e2c"));
 }
 
+TEST(Ultrasonic, APulseSaysWhichEmitterFired) {
+  Pulse pulse = golden();
+  pulse.emitter = 1;
+  EXPECT_EQ(read_pulse(write_pulse(pulse))->emitter, 1);
+  UltrasonicDecoder decoder;
+  const Decoded out =
+      decoded(decoder, from_device(TransferKind::serial, framed(write_pulse(pulse)), 30));
+  EXPECT_EQ(std::get<RangeSample>(out.samples.at(0)).emitter, 1);
+}
+
 TEST(Ultrasonic, APulseIsASample) {
   UltrasonicDecoder decoder;
   const Decoded out = decoded(decoder, line(5, 30));
