@@ -7,6 +7,8 @@
 #include "app/commands.h"
 #include "capture/session.h"
 #include "rig/fuse_session.h"
+#include "rig/fuse_sources.h"
+#include "rig/fused_table.h"
 
 namespace fude {
 namespace {
