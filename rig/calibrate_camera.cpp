@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capture/picture/grey_picture.h"
+#include "capture/recorded_pictures.h"
 #include "vision/camera_calibration.h"
 
 namespace fude {
@@ -25,25 +26,6 @@ Result<DeviceNumber> find_camera(const Session& session, const std::string& name
                                      cameras.front()->description.name + "'");
   return cameras.front()->number;
 }
-
-// The bytes of each picture stand in the camera's transfers, in the order of the frames.
-class Pictures {
- public:
-  Pictures(const Session& session, DeviceNumber camera) {
-    for (const RecordedTransfer& recorded : session.transfers)
-      if (recorded.device == camera && recorded.transfer.kind == TransferKind::picture)
-        transfers_.push_back(&recorded.transfer);
-  }
-  const Transfer* of(const CameraFrame& frame) {
-    while (next_ < transfers_.size() && transfers_[next_]->time < frame.time.host) ++next_;
-    if (next_ == transfers_.size() || transfers_[next_]->time != frame.time.host) return nullptr;
-    return transfers_[next_++];
-  }
-
- private:
-  std::vector<const Transfer*> transfers_;
-  std::size_t next_ = 0;
-};
 
 std::vector<double> list_of(const Eigen::Vector2d& pair) { return {pair.x(), pair.y()}; }
 
@@ -101,7 +83,7 @@ Result<CalibrationOutcome> calibrate_camera(const Session& session, const std::s
   if (!number) return tl::unexpected(number.error());
   auto procedure = CameraProcedure::begin(board);
   if (!procedure) return tl::unexpected(procedure.error());
-  Pictures pictures(session, *number);
+  RecordedPictures pictures(session, *number);
   std::size_t count = 0;
   std::vector<std::string> damaged;
   for (const RecordedSample& recorded : session.samples) {
