@@ -6,7 +6,7 @@ namespace fude {
 namespace {
 
 // Few, for what waits here is not on the disk yet.
-constexpr std::size_t most_waiting = 2;
+constexpr std::size_t most_waiting = 1;
 
 }  // namespace
 

@@ -31,7 +31,7 @@ class FrameKeeper {
   FrameKeeper(const FrameKeeper&) = delete;
   FrameKeeper& operator=(const FrameKeeper&) = delete;
 
-  // Never waits. A picture with its frame is encoded, unless two wait for that already or it cannot be: then
+  // Never waits. A picture with its frame is encoded, unless one waits for that already or it cannot be: then
   // it is kept as sent. Whatever else the camera's wire carried stays as it is.
   void add(Transfer transfer, std::optional<CameraFrame> frame);
 

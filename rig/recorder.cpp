@@ -8,7 +8,7 @@
 namespace fude {
 namespace {
 
-constexpr std::chrono::milliseconds between_flushes{50};
+constexpr std::chrono::milliseconds between_flushes{25};
 
 }  // namespace
 

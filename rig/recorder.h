@@ -1,5 +1,5 @@
 // Writes a session while others paint or read devices: a thread of its own, a queue that loses
-// nothing, and the disk at most 50 ms behind.
+// nothing, and the disk some 25 ms behind.
 #pragma once
 
 #include <condition_variable>
