@@ -28,7 +28,9 @@ void tell(const FusedSession& fused) {
   say(fused.counts.repeated, "inertial samples were not later than the one before, and passed over");
   say(fused.counts.outliers, "fixes were outliers, and passed over");
   say(fused.lateness.too_late, "samples came too late to be used");
-  say(fused.lateness.restarts, "times a clock began again");
+  say(fused.lateness.restarts, "times all clocks began again, and the fusion with them");
+  say(fused.lateness.rejoined,
+      "times the clock of one source stepped back, and was put back beside the others'");
 }
 
 Result<void> run(const Options& options) {

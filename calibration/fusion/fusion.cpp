@@ -7,7 +7,8 @@ namespace fude {
 namespace {
 
 constexpr Duration snapshot_period = std::chrono::milliseconds(5);
-constexpr int too_late_to_restart = 25;
+constexpr int too_late_to_rejoin = 5, too_late_to_restart = 25;
+constexpr Duration smallest_step_back = std::chrono::milliseconds(50);  // less is disorder
 
 // Of a correction so much is shown at once; the rest flows in at this speed, faster where there is much of
 // it.
@@ -19,24 +20,44 @@ constexpr double longest_flow_m = 0.02;  // more than that is no correction but 
 Fusion::Fusion(const FusionSettings& settings, Duration kept)
     : settings_(settings), kept_(kept), now_(settings) {}
 
-// Many samples in a row from long ago: their clock has begun again, and so does the fusion.
-bool Fusion::restarted(Timestamp time) {
-  if (!now_.started() || time >= now_.time() - kept_) {
-    too_late_in_a_row_ = 0;
-    return false;
+// The time among the samples of all sources; none: too late. Several samples in a row from long ago: the
+// source's clock has begun again. One that is honestly late all the time never steps back.
+std::optional<Timestamp> Fusion::on_one_clock(Source& source, Timestamp stamped) {
+  const Timestamp before = source.last.value_or(stamped);
+  source.last = stamped;
+  const auto delay = [&] { return now_.started() ? now_.time() - stamped - source.shift : Duration{}; };
+  if (std::chrono::abs(delay() + source.shift) <= kept_) source.shift = {};
+  auto& late = source.too_late;
+  if (delay() > kept_) {
+    if (late.samples++ == 0) {
+      late.stepped_back = before - stamped > smallest_step_back;
+      late.taken_before = taken_;
+    }
+    late.delays += delay();
+    const bool others_go_on = taken_ > late.taken_before;
+    if (others_go_on && late.stepped_back && late.samples >= too_late_to_rejoin) {
+      ++lateness_.rejoined;
+      source.shift += late.delays / late.samples - source.usual_delay;
+    } else if (!others_go_on && late.samples >= too_late_to_restart) {
+      restart();
+    } else {
+      ++lateness_.too_late;
+      return std::nullopt;
+    }
   }
-  if (++too_late_in_a_row_ < too_late_to_restart) {
-    ++lateness_.too_late;
-    return true;
-  }
+  late = {};
+  ++taken_;
+  if (std::chrono::abs(delay()) <= kept_) source.usual_delay += (delay() - source.usual_delay) / 16;
+  return stamped + source.shift;
+}
+
+void Fusion::restart() {
   ++lateness_.restarts;
-  too_late_in_a_row_ = 0;
   events_.clear();
   snapshots_.clear();
   forgotten_ = 0;
   withheld_m_.setZero();
-  now_ = MotionFilter(settings_);
-  return false;
+  now_.begin_again();
 }
 
 FixResult Fusion::take(const Event& event, bool& fresh) {
@@ -108,8 +129,10 @@ void Fusion::flow(Timestamp before, const Eigen::Vector3d& correction) {
   if (withheld_m_.norm() > longest_flow_m) withheld_m_.setZero();
 }
 
-bool Fusion::add(const InertialReading& reading, Timestamp time) {
-  if (restarted(time)) return false;
+bool Fusion::add(const InertialReading& reading, Timestamp stamped) {
+  const std::optional<Timestamp> placed = on_one_clock(sources_[0], stamped);
+  if (!placed) return false;
+  const Timestamp time = *placed;
   const bool late = now_.started() && time < now_.time();
   const Timestamp before = now_.time();
   const Eigen::Vector3d old = now_.motion().tracked_point_m();
@@ -119,11 +142,13 @@ bool Fusion::add(const InertialReading& reading, Timestamp time) {
   return fresh;
 }
 
-FixResult Fusion::add(const Fix& fix, Timestamp time) {
+FixResult Fusion::add(const Fix& fix, Timestamp stamped) {
   const bool tracked = std::holds_alternative<PoseFix>(fix) || std::holds_alternative<PointFix>(fix);
   const double lag_s = tracked ? now_.motion().lag_s : 0;
-  time -= std::chrono::duration_cast<Duration>(std::chrono::duration<double>(lag_s));
-  if (restarted(time)) return {FixOutcome::too_late};
+  const auto lag = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(lag_s));
+  const std::optional<Timestamp> placed = on_one_clock(sources_[1 + fix.index()], stamped - lag);
+  if (!placed) return {FixOutcome::too_late};
+  const Timestamp time = *placed;
   const bool was_lost = now_.state() == FusionState::lost;
   const Timestamp before = now_.time();
   MotionFilter unfixed = now_;

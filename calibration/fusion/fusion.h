@@ -2,8 +2,10 @@
 // is put where it belongs, and what came after it is taken again.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <variant>
 
 #include "calibration/fusion/motion_filter.h"
@@ -25,14 +27,17 @@ struct FusedPose {
 struct LatenessCounts {
   std::uint64_t late = 0;      // taken after a replay
   std::uint64_t too_late = 0;  // dropped
-  std::uint64_t restarts = 0;  // a clock that began again
+  std::uint64_t restarts = 0;  // the clock of all sources began again, and the fusion with it
+  std::uint64_t rejoined = 0;  // the clock of one source stepped back beside others that went on
 };
 
 class Fusion {
  public:
   explicit Fusion(const FusionSettings& settings = {}, Duration kept = std::chrono::milliseconds(300));
 
-  // False: dropped (not finite, repeated, older than what is kept).
+  // False: dropped (not finite, repeated, older than what is kept). A source (the inertial unit, or what
+  // gives one kind of fix) whose times step back while another goes on is put back where it was among the
+  // others, by its mean delay before and after; where none goes on, the fusion begins again.
   bool add(const InertialReading& reading, Timestamp time);
   FixResult add(const Fix& fix, Timestamp time);
 
@@ -57,10 +62,22 @@ class Fusion {
     std::size_t events = 0;  // taken before it, counted from the first ever
     MotionFilter filter;
   };
+  struct Source {
+    Duration shift{};  // onto the clock of the others
+    std::optional<Timestamp> last;
+    Duration usual_delay{};  // behind the newest sample of all
+    struct TooLate {
+      int samples = 0;  // in a row
+      bool stepped_back = false;
+      std::uint64_t taken_before = 0;
+      Duration delays{};  // their sum
+    } too_late;
+  };
 
   FixResult take(const Event& event, bool& fresh);
   FixResult insert(Event event, bool& fresh);
-  bool restarted(Timestamp time);
+  std::optional<Timestamp> on_one_clock(Source& source, Timestamp stamped);
+  void restart();
   void forget_old();
   void flow(Timestamp before, const Eigen::Vector3d& correction);
 
@@ -71,8 +88,9 @@ class Fusion {
   std::deque<Snapshot> snapshots_;
   MotionFilter now_;
   LatenessCounts lateness_;
-  int too_late_in_a_row_ = 0;
-  Eigen::Vector3d withheld_m_ = Eigen::Vector3d::Zero();  // of the corrections, not yet shown
+  std::array<Source, 1 + std::variant_size_v<Fix>> sources_;  // the inertial unit first
+  std::uint64_t taken_ = 0;                                   // of all sources
+  Eigen::Vector3d withheld_m_ = Eigen::Vector3d::Zero();      // of the corrections, not yet shown
 };
 
 }  // namespace fude

@@ -43,6 +43,12 @@ void MotionFilter::start(Timestamp time) {
   time_ = fix_time_ = time;
 }
 
+void MotionFilter::begin_again() {
+  const FusionCounts counts = counts_;
+  *this = MotionFilter(FusionSettings(settings_));
+  counts_ = counts;
+}
+
 void MotionFilter::step(Timestamp time, const InertialInput& input, ErrorMatrix* transition) {
   const double step_s = seconds(time - time_);
   if (!(step_s > 0)) return;

@@ -80,6 +80,7 @@ class MotionFilter {
   bool take(const InertialReading& reading, Timestamp time, ErrorMatrix* transition = nullptr);
   FixResult take(const Fix& fix, Timestamp time, double assumed_lag_s = 0);
   void move_to(Timestamp time, ErrorMatrix* transition = nullptr);
+  void begin_again();  // as before the first sample, but for the counts
 
   // Gravity and field as a fix, when one is due at the newest inertial sample.
   std::optional<AttitudeFix> attitude_due();

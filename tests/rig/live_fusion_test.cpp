@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <vector>
 
 #include "rig/fuse_session.h"
@@ -82,6 +83,28 @@ TEST(LiveFusion, ATrackerAloneIsFusedAndOtherToolsAreNot) {
   }
   EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s)).norm(), 3e-3);
   EXPECT_FALSE(fusion.add(4, PenSample{}));
+}
+
+// Its stamps fall back by ten seconds in the middle: beside an inertial unit, and alone.
+TEST(LiveFusion, ATrackerWhoseClockBeginsAgainIsFollowed) {
+  for (const bool helped : {true, false}) {
+    const SimulatedHand hand;
+    LiveFusion fusion(up);
+    std::optional<PoseSample> last;
+    for (int i = 1; i <= steps; ++i) {
+      if (helped) last = fusion.add(1, inertial(hand, i));
+      if (i % 5 != 0) continue;
+      PoseSample pose = seen(hand, i);
+      if (i > steps / 2) pose.time.host -= std::chrono::seconds(10);
+      const auto fused = fusion.add(2, pose);
+      if (!helped) last = fused;
+    }
+    ASSERT_TRUE(last && last->valid);
+    EXPECT_EQ(last->origin, PoseOrigin::measured);
+    EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s)).norm(), 3e-3);
+    const double off_s = helped ? 0 : 10;
+    EXPECT_EQ(last->time.host, at_second(steps * step_s - off_s));
+  }
 }
 
 // The inertial unit is plugged in later: from then on its samples give the pose.

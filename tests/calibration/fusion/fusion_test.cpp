@@ -246,6 +246,46 @@ TEST(Fusion, SurvivesAndNamesWhatDevicesSend) {
   EXPECT_LT(rig.error(3).norm(), 2e-3);
 }
 
+// A tracker's programme is started again: its stamps fall back by ten seconds, and later come right. The
+// inertial unit's likewise. What is stamped is always what is then.
+TEST(Fusion, ASourceWhoseClockStepsBackRejoinsTheOthers) {
+  for (const bool tracker : {true, false}) {
+    Rig rig;
+    double worst = 0;
+    for (int ms = 1; ms <= 9000; ++ms) {
+      const double t = ms * 1e-3, off = ms > 3000 && ms <= 6000 ? 10 : 0;
+      rig.fusion.add(rig.noise.onto(rig.hand.reading(t, 1e-3), 1e-3, {}), at_second(tracker ? t : t - off));
+      if (due(ms, 10))
+        rig.fusion.add(PointFix{.point_m = rig.hand.position(t) + rig.noise.vector(5e-4)},
+                       at_second(tracker ? t - off : t));
+      if (ms <= 2000) continue;
+      worst = std::max(worst, rig.error(t).norm());
+      EXPECT_NE(rig.fusion.pose().state, FusionState::lost) << ms;
+      if (ms % 1000 > 200) {
+        EXPECT_EQ(rig.fusion.pose().state, FusionState::ok) << ms;
+      }
+    }
+    std::printf("figure: the clock of the %s steps back by 10 s and comes right again: worst %.2f mm\n",
+                tracker ? "tracker" : "inertial unit", 1e3 * worst);
+    EXPECT_LT(worst, 5e-3);
+    EXPECT_EQ(rig.fusion.lateness().rejoined, 1U);
+    EXPECT_EQ(rig.fusion.lateness().restarts, 0U);
+    EXPECT_LT(rig.fusion.lateness().too_late, 20U);
+  }
+}
+
+TEST(Fusion, WhatIsHonestlyLateIsNeverTakenForNew) {
+  Rig rig;
+  for (int ms = 1; ms <= 3000; ++ms) {
+    rig.inertial(ms * 1e-3);
+    if (due(ms, 10) && ms > 500) {
+      EXPECT_EQ(rig.point((ms - 500) * 1e-3, 5e-4).outcome, FixOutcome::too_late);
+    }
+  }
+  EXPECT_EQ(rig.fusion.lateness().too_late, 250U);
+  EXPECT_EQ(rig.fusion.lateness().rejoined, 0U);
+}
+
 TEST(Fusion, AMagnetWalkingByIsNamedAndDoesNotTurnTheBrush) {
   Rig rig;
   double worst = 0;
