@@ -27,6 +27,7 @@ void tell(const FusedSession& fused) {
   say(fused.counts.unsound, "samples were not numbers, and passed over");
   say(fused.counts.repeated, "inertial samples were not later than the one before, and passed over");
   say(fused.counts.outliers, "fixes were outliers, and passed over");
+  say(fused.unplaced_pulses, "pulses came of an ultrasonic emitter that emitter_m does not place");
   say(fused.lateness.too_late, "samples came too late to be used");
   say(fused.lateness.restarts, "times all clocks began again, and the fusion with them");
   say(fused.lateness.rejoined,

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <cmath>
+#include <utility>
 
 namespace fude {
 namespace {
@@ -14,6 +15,19 @@ std::optional<Eigen::Vector3d> vector_of(const toml::node* node) {
   for (std::size_t i = 0; i < 3; ++i)
     v[static_cast<Eigen::Index>(i)] = array->get(i)->value<double>().value_or(std::nan(""));
   return v.allFinite() ? std::optional(v) : std::nullopt;
+}
+
+Result<std::vector<Eigen::Vector3d>> places_of(const toml::array& array, const std::string& calibration,
+                                               const char* key) {
+  std::vector<Eigen::Vector3d> places;
+  for (const toml::node& node : array) {
+    const auto place = vector_of(&node);
+    if (!place)
+      return failure(Fault::malformed,
+                     "the session's calibration " + calibration + ": " + key + " are not [x, y, z] each");
+    places.push_back(*place);
+  }
+  return places;
 }
 
 }  // namespace
@@ -29,16 +43,17 @@ Result<FuseGeometry> fuse_geometry(const Session& session) {
                                            " cannot be read: " + std::string(wrong.description()));
     }
     if (const auto tip = vector_of(table.get("tip_m"))) geometry.tip_m = tip;
-    if (const auto emitter = vector_of(table.get("emitter_m"))) geometry.emitter_m = emitter;
-    const toml::node* receivers = table.get("receivers_m");
-    if (receivers == nullptr || receivers->as_array() == nullptr) continue;
-    geometry.receivers_m.clear();
-    for (const toml::node& receiver : *receivers->as_array()) {
-      const auto place = vector_of(&receiver);
-      if (!place)
-        return failure(Fault::malformed, "the session's calibration " + calibration.name +
-                                             ": receivers_m are not [x, y, z] each");
-      geometry.receivers_m.push_back(*place);
+    for (const auto& [key, places] :
+         {std::pair("emitter_m", &geometry.emitters_m), std::pair("receivers_m", &geometry.receivers_m)}) {
+      const toml::array* array = table.get_as<toml::array>(key);
+      if (array == nullptr) continue;
+      if (const auto one = vector_of(array)) {
+        *places = {*one};
+        continue;
+      }
+      auto several = places_of(*array, calibration.name, key);
+      if (!several) return tl::unexpected(several.error());
+      *places = std::move(*several);
     }
   }
   return geometry;

@@ -13,12 +13,12 @@ namespace fude {
 
 struct FuseGeometry {
   std::optional<Eigen::Vector3d> tip_m;      // in the sensor's frame
-  std::optional<Eigen::Vector3d> emitter_m;  // of the ultrasonic emitter, likewise
+  std::vector<Eigen::Vector3d> emitters_m;   // of the ultrasonic emitters by their number, likewise
   std::vector<Eigen::Vector3d> receivers_m;  // in the world
 };
 
-// From the keys tip_m, emitter_m ([x, y, z]) and receivers_m (an array of such) of the calibrations that the
-// session carries; a later one goes before. Errors: malformed.
+// From the keys tip_m ([x, y, z]), emitter_m (such, or an array of such) and receivers_m (an array of such)
+// of the calibrations that the session carries; a later one goes before. Errors: malformed.
 Result<FuseGeometry> fuse_geometry(const Session& session);
 
 }  // namespace fude

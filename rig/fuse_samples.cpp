@@ -67,13 +67,17 @@ void UsableSamples::take(DeviceNumber device, const PositionSample& sample) {
 }
 
 void UsableSamples::take(DeviceNumber, const RangeSample& sample) {
-  if (!geometry_.emitter_m) return;
+  if (geometry_.emitters_m.empty() || geometry_.receivers_m.empty()) return;
+  if (sample.emitter >= geometry_.emitters_m.size()) {
+    ++unplaced_pulses_;
+    return;
+  }
   const double speed = ultrasonic::speed_of_sound_mps(sample.temperature_c.value_or(20));
   for (std::size_t i = 0; i < std::min(geometry_.receivers_m.size(), sample.flight_s.size()); ++i)
     if (sample.flight_s[i])
       keep(FuseSource::range, sample.time.host,
            RangeFix{.receiver_m = geometry_.receivers_m[i],
-                    .emitter_offset_m = *geometry_.emitter_m,
+                    .emitter_offset_m = geometry_.emitters_m[sample.emitter],
                     .distance_m = speed * *sample.flight_s[i]});
 }
 

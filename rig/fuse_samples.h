@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -32,6 +33,7 @@ class UsableSamples {
   UsableSamples(const Session& session, const FuseGeometry& geometry);
 
   bool has(FuseSource source) const { return found_.contains(source); }
+  std::uint64_t unplaced_pulses() const { return unplaced_pulses_; }
 
   // In their order in the session.
   std::vector<UsableSample> of(const std::set<FuseSource>& use) const;
@@ -51,6 +53,7 @@ class UsableSamples {
   std::array<std::optional<std::pair<DeviceNumber, std::string>>, 2> tool_;
   std::optional<DeviceNumber> imu_;
   std::set<FuseSource> found_;
+  std::uint64_t unplaced_pulses_ = 0;
   std::vector<std::pair<std::optional<FuseSource>, UsableSample>> samples_;  // none: inertial
 };
 

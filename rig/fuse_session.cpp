@@ -81,7 +81,9 @@ Result<FusedSession> fuse_session(const Session& session, const FuseWish& wish) 
   if (placed && gyro != accel)
     return failure(Fault::usage, "with positions, gyro and accel are used together or not at all");
   const std::vector<UsableSample> samples = usable.of(use);
-  return placed ? fuse(samples, use, gyro, wish) : fuse_orientation(samples, use, wish.smooth);
+  FusedSession fused = placed ? fuse(samples, use, gyro, wish) : fuse_orientation(samples, use, wish.smooth);
+  fused.unplaced_pulses = usable.unplaced_pulses();
+  return fused;
 }
 
 }  // namespace fude

@@ -24,6 +24,7 @@ struct FusedSession {
   std::vector<FusedRow> rows;
   FusionCounts counts;
   LatenessCounts lateness;
+  std::uint64_t unplaced_pulses = 0;  // of ultrasonic emitters whose place is not known, and not used
 };
 
 // t_s,x_m,y_m,z_m,qw,qx,qy,qz,var_0,…,var_5,state; what is not known stays empty.

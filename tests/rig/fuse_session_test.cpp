@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string>
 
 #include "rig/import_session.h"
+#include "signal/units.h"
 #include "tests/calibration/fusion/inertial_recording.h"
 #include "tests/calibration/fusion/simulated_hand.h"
 
@@ -133,8 +135,70 @@ TEST(FuseSession, TipAndReceiversComeFromTheSessionsCalibration) {
   const auto fused = fuse_session(session, {.use = named("gyro,accel,range")});
   ASSERT_TRUE(fused.has_value()) << fused.error().message;
   EXPECT_LT((fused->rows.back().position_m.value() - hand.position(10)).norm(), 3e-3);
-  session.calibrations.front().toml = "emitter_m = [";
-  EXPECT_EQ(fuse_session(session, {}).error().fault, Fault::malformed);
+  for (const char* wrong : {"emitter_m = [", "emitter_m = [0.1, 0.2]", "emitter_m = [[0.0, 0.0, 0.1], [0.1]]",
+                            "receivers_m = [[0.0, nan, 0.1]]"}) {
+    session.calibrations.front().toml = wrong;
+    EXPECT_EQ(fuse_session(session, {}).error().fault, Fault::malformed) << wrong;
+  }
+}
+
+// Gravity does not show how the brush is turned about the vertical; two emitters that fire in turn do,
+// wherever north is. A third, of which nothing is known, says nothing.
+TEST(FuseSession, TwoEmittersGiveTheWholeOrientation) {
+  const std::array emitters{Eigen::Vector3d(0.01, 0.01, 0.1), Eigen::Vector3d(0.06, -0.04, 0.02)};
+  const std::array receivers{Eigen::Vector3d(-0.1, 0, 0.5), Eigen::Vector3d(0.4, 0, 0.5),
+                             Eigen::Vector3d(0.4, 0.45, 0.5), Eigen::Vector3d(-0.1, 0.45, 0.45),
+                             Eigen::Vector3d(0.15, 0.6, 0.1)};
+  const SimulatedHand hand;
+  for (const double heading_deg : {0.0, 70.0, 140.0, -110.0}) {
+    // Everything stands turned in the room; the inertial unit feels nothing of it.
+    const Eigen::Quaterniond room = rotation_of({0, 0, heading_deg * std::numbers::pi / 180});
+    Session session = session_of(hand, "text:imu-csv");
+    session.devices.push_back({3, {.id = "0003:0001:", .name = "ears", .kind = DeviceKind::ultrasonic}});
+    std::string toml = "emitter_m = [[0.01, 0.01, 0.1], [0.06, -0.04, 0.02]]\nreceivers_m = [";
+    for (const Eigen::Vector3d& receiver : receivers) {
+      const Eigen::Vector3d place = room * receiver;
+      toml += "[" + std::to_string(place.x()) + "," + std::to_string(place.y()) + "," +
+              std::to_string(place.z()) + "],";
+    }
+    session.calibrations.push_back({"ears", toml + "]\n"});
+    SimulatedNoise noise(5);
+    std::vector<RecordedSample> samples;
+    std::uint64_t pulses = 0;
+    for (const RecordedSample& sample : session.samples) {
+      samples.push_back(sample);
+      const auto* imu = std::get_if<ImuSample>(&sample.sample);
+      if (imu == nullptr) continue;
+      const double t = seconds(imu->time.host.time_since_epoch());
+      const auto emitter = static_cast<std::uint8_t>(pulses++ % 3);
+      const Eigen::Vector3d place =
+          hand.position(t) + hand.rotation(t) * (emitter < 2 ? emitters[emitter] : Eigen::Vector3d::Zero());
+      RangeSample range{.time = imu->time, .emitter = emitter, .receivers = 5, .temperature_c = 20};
+      for (std::size_t i = 0; i < receivers.size(); ++i)
+        range.flight_s[i] = ((place - receivers[i]).norm() + 5e-4 * noise.normal(noise.generator)) / 343.21;
+      samples.push_back({3, range, 0});
+    }
+    session.samples = std::move(samples);
+    const auto fused = fuse_session(session, {.use = named("gyro,accel,range")});
+    ASSERT_TRUE(fused.has_value()) << fused.error().message;
+    EXPECT_EQ(fused->unplaced_pulses, pulses / 3);
+    double places = 0, turns = 0;
+    int count = 0;
+    for (const FusedRow& row : fused->rows) {
+      const double t = seconds(row.time.time_since_epoch());
+      if (t < 5) continue;
+      ASSERT_TRUE(row.position_m) << t;
+      places += (*row.position_m - room * hand.position(t)).squaredNorm();
+      turns += std::pow(row.world_from_sensor->angularDistance(room * hand.rotation(t)), 2);
+      ++count;
+    }
+    const double place_mm = 1e3 * std::sqrt(places / count);
+    const double turn_deg = in_degrees(Radians(std::sqrt(turns / count)));
+    std::printf("figure: two emitters in turn, turned by %.0f deg in the room: %.2f mm, %.2f deg\n",
+                heading_deg, place_mm, turn_deg);
+    EXPECT_LT(place_mm, 1);
+    EXPECT_LT(turn_deg, 0.5);
+  }
 }
 
 TEST(FuseSession, AnImportedRecording) {
