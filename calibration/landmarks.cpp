@@ -7,6 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "calibration/pose_fields.h"
+
 namespace fude {
 namespace {
 
@@ -144,19 +146,14 @@ Similarity register_points(const Points3& from, const Points3& to, Freedom freed
   return fit;
 }
 
-Fields to_fields(const TrackerRegistration& r) {
-  const Eigen::Quaterniond& q = r.rotation;
-  return {{"reference_from_tracker_q", std::vector{q.w(), q.x(), q.y(), q.z()}},
-          {"reference_from_tracker_m", std::vector{r.translation.x(), r.translation.y(), r.translation.z()}}};
+Fields to_fields(const TrackerRegistration& registration) {
+  Fields fields;
+  put_pose(fields, "reference_from_tracker", registration);
+  return fields;
 }
 
 std::optional<TrackerRegistration> registration_from(const Fields& fields) {
-  const auto q = numbers_in(fields, "reference_from_tracker_q");
-  const auto t = numbers_in(fields, "reference_from_tracker_m");
-  if (!q || q->size() != 4 || !t || t->size() != 3) return std::nullopt;
-  const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
-  if (!(std::abs(rotation.norm() - 1) < 1e-3)) return std::nullopt;
-  return TrackerRegistration{rotation.normalized(), Eigen::Vector3d(t->data())};
+  return pose_in<Reference, Tracker>(fields, "reference_from_tracker");
 }
 
 Progress LandmarkProcedure::add(const Eigen::Vector3d& measured_m) {
