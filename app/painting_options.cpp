@@ -8,6 +8,7 @@
 #include <iterator>
 #include <thread>
 
+#include "rig/calibrated_tablets.h"
 #include "rig/share_folder.h"
 #include "sim/brush/brush_spec.h"
 #include "sim/ink/paper.h"
@@ -62,6 +63,11 @@ void PaintingOptions::add_to(CLI::App& command) {
   command.add_option("--size-mm", size_mm,
                      "the sheet, WxH; default: the session's, else the tablet's active area");
   command.add_option("--tablet-mm", tablet_mm, "active area of a tablet that does not say it, WxH");
+  command
+      .add_option("--cal", calibrations,
+                  "a tablet's calibration by taps (may be given several times); default: the session's")
+      ->take_all()
+      ->expected(1);
   command.add_option("--cell-mm", cell_mm,
                      "cell of the paper, one pixel of the picture; default: the session's, else 0.1");
   command.add_option("--ink", ink, "normal, or endless: the brush stays full")
@@ -128,6 +134,11 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
     const auto size = parse_extent(tablet_mm, "--tablet-mm");
     if (!size) return tl::unexpected(size.error());
     settings.wish.tablet = *size;
+  }
+  for (const std::string& file : calibrations) {
+    auto calibration = tablet_calibration(file);
+    if (!calibration) return tl::unexpected(calibration.error());
+    settings.wish.calibrations.push_back(std::move(*calibration));
   }
   const auto until = parse_settle(settle);
   if (!until) return tl::unexpected(until.error());

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "rig/replay.h"
 #include "signal/result.h"
@@ -23,6 +24,7 @@ struct PaintingOptions {
   std::string paper;
   std::string size_mm;
   std::string tablet_mm;
+  std::vector<std::string> calibrations;
   std::string cell_mm;
   std::string ink;
   std::string flow;

@@ -1,6 +1,7 @@
 #include "calibration/pen_mapping.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "signal/elementary.h"
 
@@ -9,7 +10,6 @@ namespace {
 
 constexpr std::uint16_t abs_x = 0;
 constexpr std::uint16_t abs_y = 1;
-constexpr Radians steepest_tilt = degrees(80);
 
 const AxisRange* find_axis(const DeviceDescription& device, std::uint16_t code) {
   for (const AxisRange& axis : device.axes)
@@ -23,10 +23,8 @@ double middle(const AxisRange& axis) { return 0.5 * (double(axis.maximum) + doub
 
 // Unit vector along the leaning handle, from its tuft to its upper end.
 Eigen::Vector3d leaning_axis(const PenSample& pen) {
-  const auto slope = [](const std::optional<Radians>& tilt) {
-    return tilt ? elementary::tangent(std::clamp(*tilt, -steepest_tilt, steepest_tilt).value) : 0.0;
-  };
-  const Eigen::Vector3d lean(slope(pen.tilt_x), -slope(pen.tilt_y), 1);
+  const Eigen::Vector2d slopes = lean_of(pen);
+  const Eigen::Vector3d lean(slopes.x(), -slopes.y(), 1);
   return lean / elementary::square_root(lean.squaredNorm());
 }
 
@@ -65,7 +63,21 @@ Result<TabletMapping> mapping_for(const DeviceDescription& device, Extent sheet)
   return mapping;
 }
 
+TabletMapping mapping_by(std::shared_ptr<const TabletSurface> surface, Extent sheet) {
+  TabletMapping mapping;
+  mapping.centre_x_mm = 0.5 * sheet.width.value;
+  mapping.centre_y_mm = 0.5 * sheet.height.value;
+  mapping.turn = turn_of(*surface);
+  mapping.surface = std::move(surface);
+  return mapping;
+}
+
 Eigen::Vector2d nib_on_paper(const PenSample& pen, const TabletMapping& m) {
+  if (m.surface) {
+    const Eigen::Vector2d at = on_paper(*m.surface, pen);
+    return {m.centre_x_mm + m.scale * (at.x() - 0.5 * m.surface->width_mm),
+            m.centre_y_mm + m.scale * (at.y() - 0.5 * m.surface->height_mm)};
+  }
   const double right = m.scale * m.mm_per_count_x * (pen.x_counts - m.centre_x_counts);
   const double away = -m.scale * m.mm_per_count_y * (pen.y_counts - m.centre_y_counts);
   const elementary::SineCosine turn = elementary::sine_cosine(m.turn.value);

@@ -2,8 +2,10 @@
 // the handle, tilt and rotation to its orientation. One stated convention for every device.
 #pragma once
 
+#include <memory>
 #include <optional>
 
+#include "calibration/tablet_surface.h"
 #include "signal/brush_input.h"
 #include "signal/device.h"
 #include "signal/pen_sample.h"
@@ -24,6 +26,9 @@ struct TabletMapping {
   double centre_y_mm = 0;
   Radians turn;
   double scale = 1;  // 1: a millimetre of the hand is a millimetre on the paper
+  // Of a tablet that was calibrated: it gives the millimetres, and `turn` and the counts above do not. Its
+  // middle lies on `centre_*_mm`; `turn` is then how the tablet lies on it.
+  std::shared_ptr<const TabletSurface> surface;
 };
 
 // The sides of a sheet or of a tablet.
@@ -38,6 +43,9 @@ std::optional<Extent> active_area(const DeviceDescription& device);
 // The middle of the tablet's active area on the middle of the sheet.
 // Errors: unsupported where neither axes nor description give millimetres: name a size.
 Result<TabletMapping> mapping_for(const DeviceDescription& device, Extent sheet);
+
+// The middle of the calibrated sheet on the middle of the sheet. `surface`: not null.
+TabletMapping mapping_by(std::shared_ptr<const TabletSurface> surface, Extent sheet);
 
 // Pen pressure to brush. The pen's nib marks where the handle's axis meets the paper. At pressure p
 // the root of the tuft stands `tuft_length · (1 − deepest · p^exponent)` from there along the axis;

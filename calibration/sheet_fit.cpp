@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "calibration/left_out.h"
 #include "calibration/report.h"
 
 namespace fude {
@@ -97,15 +98,6 @@ double depth(const SmoothField& height, std::span<const Eigen::Vector3d> points)
     high = std::max(high, z);
   }
   return high - low;
-}
-
-// A difference of squared errors that its own scatter does not explain.
-bool clearly_smaller(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& than) {
-  const Eigen::ArrayXd gain = than.array().square() - errors.array().square();
-  const double mean = gain.mean();
-  const double n = double(gain.size());
-  const double deviation = std::sqrt((gain - mean).square().sum() / std::max(1.0, n - 1) / n);
-  return mean > 2 * deviation;
 }
 
 }  // namespace

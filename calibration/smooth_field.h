@@ -30,7 +30,10 @@ class SmoothField {
   SmoothField(FreeShape shape, Eigen::RowVectorXd centre, double scale, Eigen::MatrixXd knots,
               Eigen::MatrixXd weights, Eigen::MatrixXd coefficients);
 
+  // Both with + − × ÷, square roots and fude's own logarithm alone: the same bits on every machine.
   Eigen::RowVectorXd at(const Eigen::RowVectorXd& point) const;
+  // A row for each coordinate of the point, a column for each function.
+  Eigen::MatrixXd slope(const Eigen::RowVectorXd& point) const;
 
   FreeShape shape() const { return shape_; }
   const Eigen::RowVectorXd& centre() const { return centre_; }  // points are (x − centre)/scale inside

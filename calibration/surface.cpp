@@ -6,6 +6,7 @@
 
 #include "calibration/plane_fit.h"
 #include "calibration/sheet_fit.h"
+#include "calibration/stored_field.h"
 
 namespace fude {
 namespace {
@@ -77,20 +78,6 @@ Corners paper_of(const std::array<Eigen::Vector3d, 4>& c, const Eigen::Vector3d&
   return paper;
 }
 
-std::vector<double> listed(const Eigen::MatrixXd& m) {
-  std::vector<double> list;
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < m.cols(); ++j) list.push_back(m(i, j));
-  return list;
-}
-
-Eigen::MatrixXd matrix(const std::vector<double>& list, Eigen::Index columns) {
-  Eigen::MatrixXd m(Eigen::Index(list.size()) / columns, columns);
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < columns; ++j) m(i, j) = list[std::size_t(i * columns + j)];
-  return m;
-}
-
 }  // namespace
 
 Fields to_fields(const SurfaceCalibration& surface) {
@@ -112,13 +99,7 @@ Fields to_fields(const SurfaceCalibration& surface) {
                 {"width_mm", surface.width_mm},
                 {"height_mm", surface.height_mm},
                 {"corners_m", corners}};
-  if (surface.sheet) {
-    fields.push_back({"sheet_centre_mm", listed(surface.sheet->centre())});
-    fields.push_back({"sheet_scale_mm", surface.sheet->scale()});
-    fields.push_back({"sheet_knots", listed(surface.sheet->knots())});
-    fields.push_back({"sheet_weights_mm", listed(surface.sheet->weights())});
-    fields.push_back({"sheet_polynomial_mm", listed(surface.sheet->coefficients())});
-  }
+  if (surface.sheet) store(fields, "sheet", *surface.sheet);
   return fields;
 }
 
@@ -136,17 +117,8 @@ std::optional<SurfaceCalibration> surface_from(const Fields& fields) {
   surface.width_mm = width->front();
   surface.height_mm = height->front();
   if (text_in(fields, "shape") != "sheet") return surface;
-  const auto centre = numbers_in(fields, "sheet_centre_mm"), scale = numbers_in(fields, "sheet_scale_mm"),
-             knots = numbers_in(fields, "sheet_knots"), weights = numbers_in(fields, "sheet_weights_mm"),
-             polynomial = numbers_in(fields, "sheet_polynomial_mm");
-  if (!centre || centre->size() != 2 || !scale || scale->size() != 1 || !(scale->front() > 0) || !knots ||
-      !weights || knots->size() != 2 * weights->size() || !polynomial)
-    return std::nullopt;
-  const bool bowed = polynomial->size() == terms(FreeShape::bowed, 2);
-  if (!bowed && polynomial->size() != terms(FreeShape::quadric, 2)) return std::nullopt;
-  surface.sheet = SmoothField(bowed ? FreeShape::bowed : FreeShape::quadric,
-                              Eigen::RowVector2d((*centre)[0], (*centre)[1]), scale->front(),
-                              matrix(*knots, 2), matrix(*weights, 1), matrix(*polynomial, 1));
+  surface.sheet = stored_field(fields, "sheet", 1);
+  if (!surface.sheet) return std::nullopt;
   return surface;
 }
 
@@ -154,6 +126,13 @@ Eigen::Vector3d on_paper(const SurfaceCalibration& surface, const Eigen::Vector3
   Eigen::Vector3d p = surface.paper_from_tracker * (mm_per_m * tracker_m);
   if (surface.sheet) p.z() -= surface.sheet->at(p.head<2>().transpose())(0);
   return p;
+}
+
+SheetPoint sheet_at(const SurfaceCalibration& surface, const Eigen::Vector2d& paper_mm) {
+  if (!surface.sheet) return {};
+  const Eigen::RowVector2d at = paper_mm.transpose();
+  const Eigen::Vector2d slope = surface.sheet->slope(at).col(0);
+  return {surface.sheet->at(at)(0), Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized()};
 }
 
 Progress SurfaceProcedure::add(const PoseSample& sample) {

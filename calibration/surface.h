@@ -31,6 +31,15 @@ std::optional<SurfaceCalibration> surface_from(const Fields& fields);
 // x and y on the paper and the height above the sheet, mm.
 Eigen::Vector3d on_paper(const SurfaceCalibration& surface, const Eigen::Vector3d& tracker_m);
 
+// The sheet where it is touched: for contacts, against which a tip is pressed along the normal.
+struct SheetPoint {
+  double height_mm = 0;                               // of the sheet over the paper's z = 0
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, upwards, in the paper's frame
+};
+// At x and y on the paper, mm; also beyond its edges, where the sheet goes on as it left. About 5 µs with the
+// 200 knots that a sheet has at the most, nothing on a plane.
+SheetPoint sheet_at(const SurfaceCalibration& surface, const Eigen::Vector2d& paper_mm);
+
 class SurfaceProcedure {
  public:
   // `tip_m` in the tool's frame, from a pivot. `corners_first`: the first four touches are the paper's

@@ -1,6 +1,7 @@
 #include "rig/sheet_plan.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fude {
 namespace {
@@ -36,8 +37,18 @@ CountsBox covered(const Session& session, DeviceNumber device) {
 
 }  // namespace
 
+Result<TabletMapping> mapping_on(const SheetPlan& plan, const DeviceDescription& device) {
+  if (auto surface = surface_of(plan.calibrated, device)) return mapping_by(std::move(surface), plan.sheet);
+  return mapping_for(device, plan.sheet);
+}
+
 Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
   SheetPlan plan;
+  std::vector<RecordedCalibration> calibrations = session.calibrations;
+  calibrations.insert(calibrations.end(), wish.calibrations.begin(), wish.calibrations.end());
+  auto calibrated = calibrated_tablets(calibrations);
+  if (!calibrated) return tl::unexpected(calibrated.error());
+  plan.calibrated = std::move(*calibrated);
   std::vector<RecordedDevice> painters;
   for (RecordedDevice device : session.devices) {
     if (!covered(session, device.number).any) continue;
@@ -48,10 +59,18 @@ Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
     painters.push_back(std::move(device));
   }
 
+  if (!painters.empty() && !wish.calibrations.empty()) {
+    const auto named = calibrated_tablets(wish.calibrations);
+    const auto its = [&](const RecordedDevice& d) { return surface_of(*named, d.description) != nullptr; };
+    if (named && std::ranges::none_of(painters, its))
+      return failure(Fault::usage, "the calibration given with --cal was made with another tablet than '" +
+                                       painters.front().description.name + "'; calibrate this one");
+  }
+
   for (const RecordedDevice& device : painters) {
     Extent area;
-    if (const auto active = active_area(device.description)) {
-      area = *active;
+    if (const auto known = area_of(plan.calibrated, device.description)) {
+      area = *known;
     } else if (const auto mm = device.description.mm_per_count) {
       const CountsBox box = covered(session, device.number);
       area = {Millimetres((box.right - box.left) * *mm + border_mm),
@@ -64,9 +83,9 @@ Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
   if (painters.empty() && !wish.sheet) plan.sheet = {Millimetres(100), Millimetres(100)};
 
   for (const RecordedDevice& device : painters) {
-    auto mapping = mapping_for(device.description, plan.sheet);
+    auto mapping = mapping_on(plan, device.description);
     if (!mapping) return tl::unexpected(mapping.error());
-    if (device.description.mm_per_count && !active_area(device.description)) {
+    if (!mapping->surface && device.description.mm_per_count && !active_area(device.description)) {
       const CountsBox box = covered(session, device.number);
       mapping->centre_x_counts = 0.5 * (box.left + box.right);
       mapping->centre_y_counts = 0.5 * (box.top + box.bottom);

@@ -30,11 +30,11 @@ Timestamp now() {
 }
 
 // The largest tablet that is there, as a replay will have it; else A5.
-Extent sheet_for_the_hand() {
+Extent sheet_for_the_hand(const std::vector<CalibratedTablet>& calibrated) {
   Extent sheet;
   if (const auto found = attached_devices())
     for (const AttachedDevice& tablet : *found)
-      if (const auto area = active_area(tablet.description); area && tablet.access) {
+      if (const auto area = area_of(calibrated, tablet.description); area && tablet.access) {
         sheet.width = std::max(sheet.width, area->width);
         sheet.height = std::max(sheet.height, area->height);
       }
@@ -120,7 +120,7 @@ class Studio {
   void listen_to_tablets(Recorder* recorder) {
     DeviceListener listener;
     listener.appeared = [this, recorder](std::size_t, const DeviceDescription& description) {
-      const auto mapping = mapping_for(description, plan_.sheet);
+      const auto mapping = mapping_on(plan_, description);
       const std::lock_guard lock(tablets_mutex_);
       if (recorder) recorder->add(description);
       known_tablets_.push_back({++devices_, mapping ? std::optional(*mapping) : std::nullopt, false});
@@ -332,7 +332,11 @@ class Studio {
 Result<void> run_studio(const StudioSetup& setup) {
   const Session blank;
   SheetWish wish = setup.settings.wish;
-  if (!setup.played && !wish.sheet) wish.sheet = sheet_for_the_hand();
+  if (!setup.played && !wish.sheet) {
+    const auto calibrated = calibrated_tablets(wish.calibrations);
+    if (!calibrated) return tl::unexpected(calibrated.error());
+    wish.sheet = sheet_for_the_hand(*calibrated);
+  }
   const auto plan = plan_sheet(setup.played ? *setup.played : blank, wish);
   if (!plan) return tl::unexpected(plan.error());
   PaintingSetup painting_setup = setup.settings.painting;
@@ -350,6 +354,9 @@ Result<void> run_studio(const StudioSetup& setup) {
     for (const auto& [key, value] : setup.settings.to_record) recorder->add(SessionSetting{key, value});
     recorder->add(SessionSetting{"sheet_mm", as_text(plan->sheet)});
     if (setup.sheet) recorder->add(RecordedSheet{0, as_bytes(*setup.sheet)});
+    if (setup.played)
+      for (const RecordedCalibration& carried : setup.played->calibrations) recorder->add(carried);
+    for (const RecordedCalibration& named : wish.calibrations) recorder->add(named);
   }
   Studio studio(setup, *plan, std::move(*painting), recorder.get());
   if (auto done = studio.run(); !done) return done;

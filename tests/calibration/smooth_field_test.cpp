@@ -84,6 +84,26 @@ TEST(SmoothField, NoiseAloneIsNotTakenForShape) {
   EXPECT_LT(freedom, 6);  // three are the plane's
 }
 
+TEST(SmoothField, ItsSlopeIsThatOfItsValues) {
+  for (const int dimensions : {2, 3})
+    for (const FreeShape shape : {FreeShape::plane, FreeShape::quadric, FreeShape::bowed}) {
+      const Eigen::MatrixXd points = scattered(60, dimensions, 10);
+      Eigen::MatrixXd values(60, 2);
+      for (Eigen::Index i = 0; i < 60; ++i)
+        values.row(i) << std::sin(points(i, 0) / 90), std::cos(points(i, 1) / 70) + 0.01 * points(i, 0);
+      const SmoothField field = SmoothField::fit(points, values, shape);
+      const Eigen::RowVectorXd at = 0.5 * scattered(1, dimensions, 11);
+      const Eigen::MatrixXd slope = field.slope(at);
+      ASSERT_EQ(slope.rows(), dimensions);
+      constexpr double h = 1e-3;
+      for (Eigen::Index i = 0; i < dimensions; ++i) {
+        const Eigen::RowVectorXd step = h * Eigen::RowVectorXd::Unit(dimensions, i);
+        const Eigen::RowVectorXd by_values = (field.at(at + step) - field.at(at - step)) / (2 * h);
+        EXPECT_LT((slope.row(i) - by_values).norm(), 1e-7) << dimensions << " dimensions, coordinate " << i;
+      }
+    }
+}
+
 TEST(SmoothField, WhatIsStoredGivesTheSame) {
   const Eigen::MatrixXd points = scattered(40, 2, 9);
   const Eigen::MatrixXd values = points.col(0).array().sin().matrix();

@@ -181,6 +181,23 @@ TEST(Surface, ATouchBesideTheSheetIsNamed) {
     }
 }
 
+TEST(Surface, ContactsFindItsHeightAndNormal) {
+  const ScriptedSheet sheet{.height_mm = bow, .noise_mm = 0};
+  const auto found = surface_of(sheet.samples(3), sheet.tip_m, true);
+  ASSERT_TRUE(found) << found.error().reason;
+  for (const auto& [x, y] : {std::pair(77.0, 88.0), std::pair(210.0, 150.0), std::pair(390.0, 20.0)}) {
+    const Eigen::Vector3d tracker_mm = 1e3 * sheet.point_m(x, y);
+    const Eigen::Vector3d paper = found->value.paper_from_tracker * tracker_mm;
+    const SheetPoint at = sheet_at(found->value, paper.head<2>());
+    EXPECT_NEAR(at.height_mm, paper.z(), 0.2);
+    const double slope = 20 * std::numbers::pi / 420 * std::cos(std::numbers::pi * x / 420);
+    const Eigen::Vector3d normal =
+        sheet.tracker_from_paper.rotation * Eigen::Vector3d(-slope, 0, 1).normalized();
+    EXPECT_LT((found->value.paper_from_tracker.rotation * normal - at.normal).norm(), 0.02);
+  }
+  EXPECT_EQ(sheet_at({}, {3, 4}).normal, Eigen::Vector3d::UnitZ());
+}
+
 TEST(Surface, ResultsReadBack) {
   const ScriptedSheet sheet{.height_mm = bow};
   const auto found = surface_of(sheet.samples(3), sheet.tip_m, true);

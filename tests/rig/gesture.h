@@ -5,7 +5,9 @@
 #include <numbers>
 #include <vector>
 
+#include "calibration/tablet_surface.h"
 #include "capture/session.h"
+#include "rig/calibration_file.h"
 #include "rig/replay.h"
 #include "rig/share_folder.h"
 #include "signal/elementary.h"
@@ -59,6 +61,22 @@ inline Session session(double rate_hz, int strokes) {
     }
   }
   return s;
+}
+
+// The same by a tablet that was calibrated: bent, turned and shifted with the pen's lean, on the same sheet.
+inline Session calibrated(Session session) {
+  session.devices[0].description.id = "056a:0001:T1";
+  TabletSurface surface;
+  surface.mm_from_counts << 0.0049, 1e-4, -1, -1e-4, -0.0049, 40, 0, 1e-6, 1;
+  surface.lean_counts = {-600, -400};
+  surface.width_mm = surface.height_mm = sheet_mm;
+  surface.warp = SmoothField(FreeShape::plane, Eigen::RowVector2d(20, 20), 20,
+                             Eigen::Matrix<double, 3, 2>{{-1, -1}, {1, 0}, {0.2, 0.9}},
+                             Eigen::Matrix<double, 3, 2>{{0.5, 0.1}, {-0.7, 0.3}, {0.2, -0.4}},
+                             Eigen::Matrix<double, 3, 2>{{0.2, -0.1}, {0.3, 0}, {0, 0.4}});
+  CalibrationReport report{.procedure = "surface", .accepted = true, .devices = {"056a:0001:T1"}};
+  session.calibrations.push_back({"surface", toml_of({to_fields(surface), report})});
+  return session;
 }
 
 // What it is painted with: a round goat brush on cells of 0.2 mm.

@@ -194,11 +194,11 @@ TEST(Undo, OfEverythingLeavesABlankSheet) {
   history.apply(Action{{}, Undo{}});  // nothing left: nothing happens
 }
 
-TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
+// Paints the script live, records that, and paints the record again. Gives the picture of both.
+std::string painted_live_and_again(const Session& script, const std::string& name) {
   const auto path =
-      std::filesystem::temp_directory_path() / ("fude-live-" + std::to_string(getpid()) + ".fude");
+      std::filesystem::temp_directory_path() / ("fude-" + name + "-" + std::to_string(getpid()) + ".fude");
   std::filesystem::remove(path);
-  const Session script = gesture::session(200, 2);
   const SheetPlan plan = plan_sheet(script, {}).value();
   ReplaySettings s = settings(2);
   PaintingSetup setup = s.painting;
@@ -210,6 +210,7 @@ TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
   double step_s = 0;
   {
     auto recorder = Recorder::open(path).value();
+    for (const RecordedCalibration& carried : script.calibrations) recorder->add(carried);
     recorder->add(script.devices[0].description);
     LivePainting live(Painting::open(setup).value(), s.reach, recorder.get());
     for (const RecordedPen& pen : script.pens) {
@@ -224,7 +225,7 @@ TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
     end = history.step();
     step_s = history.painting().step_s();
     live_picture = picture_sha256(picture_of(history.painting().ink(), s.palette));
-    ASSERT_TRUE(recorder->close());
+    EXPECT_TRUE(recorder->close());
   }
   const Session recorded = read_session(path).value();
   EXPECT_EQ(recorded.pens.size(), script.pens.size());
@@ -233,6 +234,24 @@ TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
   s.settle.seconds = static_cast<double>(after) * step_s;
   EXPECT_EQ(painted(recorded, s).picture_sha256, live_picture);
   std::filesystem::remove(path);
+  return live_picture;
+}
+
+TEST(LivePainting, AReplayOfWhatWasPaintedLiveIsTheSamePicture) {
+  painted_live_and_again(gesture::session(200, 2), "live");
+}
+
+TEST(LivePainting, ACalibratedTabletPaintsTheSameInAReplay) {
+  painted_live_and_again(gesture::calibrated(gesture::session(200, 2)), "calibrated");
+}
+
+TEST(Replay, TheCalibrationThatTheSessionCarriesMovesTheStroke) {
+  const Session plain = gesture::session(150, 1);
+  const Session calibrated = gesture::calibrated(plain);
+  EXPECT_NE(painted(plain, settings()).picture_sha256, painted(calibrated, settings()).picture_sha256);
+  Session without = calibrated;
+  without.calibrations.clear();
+  EXPECT_EQ(painted(plain, settings()).picture_sha256, painted(without, settings()).picture_sha256);
 }
 
 // An ink on a card that is full after some steps.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "rig/calibration_file.h"
+
 namespace fude {
 namespace {
 
@@ -76,6 +78,64 @@ TEST(SheetPlan, AnEmptySessionStillHasASheet) { EXPECT_TRUE(plan_sheet(Session{}
 
 TEST(SheetPlan, AHugeSheetIsRefused) {
   EXPECT_FALSE(plan_sheet(Session{}, {.sheet = Extent{Millimetres(1e6), Millimetres(10)}}).has_value());
+}
+
+// Of a sheet of 180 × 90 mm, whose left edge lies on x = `left_counts`.
+RecordedCalibration taps_on(const std::string& device, double left_counts) {
+  TabletSurface surface;
+  surface.mm_from_counts << 0.005, 0, -0.005 * left_counts, 0, -0.005, 90, 0, 0, 1;
+  surface.width_mm = 180;
+  surface.height_mm = 90;
+  const CalibrationReport report{.procedure = "surface", .accepted = true, .devices = {device}};
+  return {"surface", toml_of({to_fields(surface), report})};
+}
+
+Session calibrated_tablet() {
+  Session s = tablet();
+  s.devices[0].description.id = "056a:0001:A";
+  s.calibrations = {taps_on("056a:0001:A", 1000), taps_on("056a:0001:B", 3000), {"other", "rpm = 3"}};
+  return s;
+}
+
+double left_edge_mm(const SheetPlan& plan, double counts) {
+  return nib_on_paper(pen(1, counts, 18000, true).sample, plan.mappings.at(1)).x();
+}
+
+TEST(SheetPlan, ACalibratedTabletPaintsOnTheSheetThatWasTapped) {
+  const SheetPlan plan = plan_sheet(calibrated_tablet(), {}).value();
+  EXPECT_EQ(plan.sheet.width, Millimetres(180));
+  EXPECT_EQ(plan.sheet.height, Millimetres(90));
+  EXPECT_NEAR(left_edge_mm(plan, 1000), 0, 1e-9);
+}
+
+TEST(SheetPlan, TheCalibrationThatIsNamedGoesBeforeTheSessions) {
+  const SheetPlan plan =
+      plan_sheet(calibrated_tablet(), {.calibrations = {taps_on("056a:0001:A", 5000)}}).value();
+  EXPECT_NEAR(left_edge_mm(plan, 5000), 0, 1e-9);
+}
+
+TEST(SheetPlan, ACalibrationOfAnotherTabletIsNotUsed) {
+  const auto plan = plan_sheet(calibrated_tablet(), {.calibrations = {taps_on("056a:0001:C", 5000)}});
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().message.find("another tablet"), std::string::npos) << plan.error().message;
+  Session other = calibrated_tablet();
+  other.devices[0].description.id = "056a:0001:D";
+  EXPECT_EQ(plan_sheet(other, {}).value().mappings.at(1).surface, nullptr);
+}
+
+TEST(SheetPlan, ADamagedCalibrationIsNotPassedOver) {
+  Session s = calibrated_tablet();
+  std::string& toml = s.calibrations[0].toml;
+  toml.erase(toml.find("lean_counts"), toml.find('\n', toml.find("lean_counts")) - toml.find("lean_counts"));
+  const auto plan = plan_sheet(s, {});
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().message.find("lacks a part"), std::string::npos) << plan.error().message;
+}
+
+TEST(SheetPlan, ATabletThatComesLaterIsMappedByItsCalibration) {
+  const SheetPlan plan = plan_sheet(Session{}, {.calibrations = {taps_on("056a:0001:A", 1000)}}).value();
+  EXPECT_TRUE(mapping_on(plan, calibrated_tablet().devices[0].description).value().surface);
+  EXPECT_FALSE(mapping_on(plan, tablet().devices[0].description).value().surface);
 }
 
 }  // namespace
