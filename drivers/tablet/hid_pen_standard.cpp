@@ -1,8 +1,8 @@
 #include "drivers/tablet/hid_pen_standard.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+#include <span>
 
 namespace fude::hid_pen {
 namespace {
@@ -45,49 +45,60 @@ Radians turn(const hid::Field& field, std::int32_t raw) {
   return Radians(2 * std::numbers::pi * (share(field, raw).value - 0.5));
 }
 
-bool usable(const hid::Field& field) { return !field.relative && counts(field) > 0; }
+bool is_of_a_pen(const hid::Field& field) {
+  return !field.relative && counts(field) > 0 && std::ranges::count(applications, field.application) != 0;
+}
+
+// Of the values of one report.
+std::optional<StandardPen> standard_pen(std::span<const hid::Field> values) {
+  std::size_t bytes = 0;
+  const auto find = [&](std::uint16_t page, std::uint16_t id) -> std::optional<hid::Field> {
+    const auto found = std::ranges::find(values, hid::usage(page, id), &hid::Field::usage);
+    if (found == values.end()) return std::nullopt;
+    bytes = std::max(bytes, hid::bytes_through(*found));
+    return *found;
+  };
+  const auto x = find(generic, 0x30), y = find(generic, 0x31);
+  const auto tip = find(digitizer, 0x42), pressure = find(digitizer, 0x30);
+  if (!x || !y || (!tip && !pressure)) return std::nullopt;
+  StandardPen pen{.x = *x,
+                  .y = *y,
+                  .tip = tip,
+                  .in_range = find(digitizer, 0x32),
+                  .eraser = find(digitizer, 0x45),
+                  .invert = find(digitizer, 0x3c),
+                  .barrel = find(digitizer, 0x44),
+                  .second_barrel = find(digitizer, 0x5a),
+                  .pressure = pressure,
+                  .tilt_x = find(digitizer, 0x3d),
+                  .tilt_y = find(digitizer, 0x3e),
+                  .twist = find(digitizer, 0x41),
+                  .serial = find(digitizer, 0x5b)};
+  pen.bytes = bytes;
+  return pen;
+}
 
 }  // namespace
 
 std::vector<StandardPen> standard_pens(Bytes descriptor) {
-  const auto parsed = hid::parse_descriptor(descriptor);
+  auto parsed = hid::parse_descriptor(descriptor);
   std::vector<StandardPen> pens;
   if (!parsed) return pens;
-  for (int number = 0; number < 256; ++number) {
-    const auto find = [&](std::uint16_t page, std::uint16_t id) -> std::optional<hid::Field> {
-      for (const hid::Field& field : parsed->inputs)
-        if (field.report == number && field.usage == hid::usage(page, id) && usable(field) &&
-            std::find(std::begin(applications), std::end(applications), field.application) !=
-                std::end(applications))
-          return field;
-      return std::nullopt;
-    };
-    const auto x = find(generic, 0x30), y = find(generic, 0x31);
-    const auto tip = find(digitizer, 0x42), pressure = find(digitizer, 0x30);
-    if (!x || !y || (!tip && !pressure)) continue;
-    pens.push_back({.x = *x,
-                    .y = *y,
-                    .tip = tip,
-                    .in_range = find(digitizer, 0x32),
-                    .eraser = find(digitizer, 0x45),
-                    .invert = find(digitizer, 0x3c),
-                    .barrel = find(digitizer, 0x44),
-                    .second_barrel = find(digitizer, 0x5a),
-                    .pressure = pressure,
-                    .tilt_x = find(digitizer, 0x3d),
-                    .tilt_y = find(digitizer, 0x3e),
-                    .twist = find(digitizer, 0x41),
-                    .serial = find(digitizer, 0x5b)});
+  auto& values = parsed->inputs;
+  std::erase_if(values, [](const hid::Field& field) { return !is_of_a_pen(field); });
+  std::ranges::stable_sort(values, {}, &hid::Field::report);
+  for (auto first = values.begin(); first != values.end();) {
+    const auto end = std::ranges::upper_bound(first, values.end(), first->report, {}, &hid::Field::report);
+    if (const auto pen = standard_pen({first, end})) pens.push_back(*pen);
+    first = end;
   }
   return pens;
 }
 
 PenReport read_standard(const StandardPen& layout, Bytes report, PenSample& pen) {
-  const auto x = hid::value(layout.x, report), y = hid::value(layout.y, report);
-  if (!x || !y)
-    return layout.x.report != 0 && !report.empty() && octet(report, 0) != layout.x.report
-               ? PenReport::unknown
-               : PenReport::malformed;
+  if (layout.x.report != 0 && !report.empty() && octet(report, 0) != layout.x.report)
+    return PenReport::unknown;
+  if (report.size() < layout.bytes) return PenReport::malformed;
   const auto number = [&](const std::optional<hid::Field>& field) {
     return field ? hid::value(*field, report) : std::nullopt;
   };
@@ -109,8 +120,8 @@ PenReport read_standard(const StandardPen& layout, Bytes report, PenSample& pen)
   if (const auto raw = number(layout.tilt_x)) pen.tilt_x = lean(*layout.tilt_x, *raw);
   if (const auto raw = number(layout.tilt_y)) pen.tilt_y = lean(*layout.tilt_y, *raw);
   if (const auto raw = number(layout.twist)) pen.rotation = turn(*layout.twist, *raw);
-  pen.x_counts = *x;
-  pen.y_counts = *y;
+  pen.x_counts = hid::value(layout.x, report).value_or(0);
+  pen.y_counts = hid::value(layout.y, report).value_or(0);
   return PenReport::sample;
 }
 

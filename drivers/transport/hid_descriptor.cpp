@@ -193,17 +193,19 @@ class Parser {
   Error wrong_{};
 };
 
+// The field's first bit, that of the report's number being the first of all.
+std::size_t in_report(const Field& field) { return field.first_bit + (field.report != 0 ? 8U : 0U); }
+
 }  // namespace
 
 Result<Descriptor> parse_descriptor(Bytes descriptor) { return Parser().parse(descriptor); }
 
+std::size_t bytes_through(const Field& field) { return (in_report(field) + field.bits + 7) / 8; }
+
 std::optional<std::int32_t> value(const Field& field, Bytes report) {
-  std::size_t first = field.first_bit;
-  if (field.report != 0) {
-    if (report.empty() || octet(report, 0) != field.report) return std::nullopt;
-    first += 8;
-  }
-  if (field.bits == 0 || field.bits > 32 || first + field.bits > 8 * report.size()) return std::nullopt;
+  if (field.bits == 0 || field.bits > 32 || report.size() < bytes_through(field)) return std::nullopt;
+  if (field.report != 0 && octet(report, 0) != field.report) return std::nullopt;
+  const std::size_t first = in_report(field);
   std::uint64_t bits = 0;
   const std::size_t last = (first + field.bits - 1) / 8;
   for (std::size_t i = last + 1; i-- > first / 8;) bits = bits << 8 | octet(report, i);

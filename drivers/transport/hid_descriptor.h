@@ -1,6 +1,7 @@
 // A HID report descriptor read into the fields of its reports (Device Class Definition for HID 1.11, 6.2.2).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -40,6 +41,9 @@ struct Descriptor {
 // Errors: malformed where an item is cut off, a pop has no push, a report is longer than 8 KiB or the limits
 // are passed.
 Result<Descriptor> parse_descriptor(Bytes descriptor);
+
+// How many bytes a report has, its number included, that holds the whole of the field.
+std::size_t bytes_through(const Field& field);
 
 // The field's value in a report that begins with its number if it has one; none where the report is another
 // or too short. Signed where the logical minimum is.

@@ -188,11 +188,12 @@ TEST_P(FamilyFaults, ALongSilence) {
 
 std::string family_name(const testing::TestParamInfo<int>& info) {
   std::string name = family_streams(1).at(static_cast<std::size_t>(info.param)).name;
-  std::erase_if(name, [](char c) { return c == ' ' || c == '-'; });
+  std::erase_if(name, [](char c) { return c == ' ' || c == '-' || c == ','; });
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FamilyFaults, testing::Range(0, 12), family_name);
+INSTANTIATE_TEST_SUITE_P(All, FamilyFaults, testing::Range(0, static_cast<int>(family_streams(1).size())),
+                         family_name);
 
 }  // namespace
 }  // namespace fude

@@ -43,6 +43,8 @@ TEST(HidDescriptor, FieldsStandWhereTheItemsPutThem) {
   EXPECT_EQ(value(tip, report), 1);
   EXPECT_EQ(value(x, report), 0x1234);
   EXPECT_EQ(value(tilt, report), -60);
+  EXPECT_EQ(bytes_through(tip), 2U);
+  EXPECT_EQ(bytes_through(tilt), report.size());
   EXPECT_FALSE(value(x, octets({8, 0, 0, 0, 0, 0, 0})).has_value());
   EXPECT_FALSE(value(y, octets({7, 0, 0, 0})).has_value());
 }
@@ -52,7 +54,9 @@ TEST(HidDescriptor, ValuesOfAnyWidthCrossBytes) {
   EXPECT_EQ(value(field, octets({0xe0, 0xff, 0x01})), 0xfff);
   field.logical_minimum = -1;
   EXPECT_EQ(value(field, octets({0xe0, 0xff, 0x01})), -1);
+  EXPECT_EQ(bytes_through(field), 3U);
   field = {.first_bit = 7, .bits = 32};
+  EXPECT_EQ(bytes_through(field), 5U);
   EXPECT_EQ(value(field, octets({0x80, 0, 0, 0, 0x40})), static_cast<std::int32_t>(0x80000001));
 }
 

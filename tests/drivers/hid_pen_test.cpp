@@ -8,6 +8,7 @@
 
 #include "drivers/tablet/hid_pen_decoder.h"
 #include "drivers/tablet/hid_pen_uclogic.h"
+#include "tests/fakes/family_streams.h"
 
 namespace fude {
 namespace {
@@ -130,17 +131,16 @@ TEST_F(HidPen, UcLogicsReportsTellTheirOwnLayout) {
   EXPECT_EQ(read(report({9, 0x80, 0x41, 0x3d, 0xda, 0x12, 0, 0}))->tool, PenTool::none);
 }
 
-TEST_F(HidPen, AStandardPenIsReadByItsDescriptor) {
+// Tip, barrel, eraser, invert and in range; x and y; pressure; tilt.
+DeviceDescription standard_tablet() {
   DeviceDescription d = device(0x28bd, 0x904);
-  d.hid_descriptor =
-      octets({0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x07, 0x09, 0x20, 0xa1, 0x00, 0x09, 0x42, 0x09,
-              0x44, 0x09, 0x45, 0x09, 0x3c, 0x09, 0x32, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x05,
-              0x81, 0x02, 0x95, 0x03, 0x81, 0x03, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x55, 0x0e, 0x65,
-              0x11, 0x35, 0x00, 0x46, 0xe8, 0x03, 0x26, 0x10, 0x27, 0x75, 0x10, 0x95, 0x02, 0x81, 0x02,
-              0x65, 0x00, 0x05, 0x0d, 0x09, 0x30, 0x26, 0xff, 0x1f, 0x95, 0x01, 0x81, 0x02, 0x09, 0x3d,
-              0x09, 0x3e, 0x15, 0xc4, 0x25, 0x3c, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0, 0xc0});
+  d.hid_descriptor = standard_pen_descriptor();
+  return d;
+}
+
+TEST_F(HidPen, AStandardPenIsReadByItsDescriptor) {
   const Transfer down = report({7, 0x13, 0x88, 0x13, 0x10, 0x27, 0xff, 0x1f, 0x1e, 0xe2});
-  open(d, down);
+  open(standard_tablet(), down);
   EXPECT_NEAR(tablet_.width->value, 100, 1e-9);  // 1000 of a hundredth of a centimetre
   ASSERT_EQ(tablet_.axes.size(), 3U);
   EXPECT_EQ(tablet_.axes[2].maximum, 8191);
@@ -155,6 +155,45 @@ TEST_F(HidPen, AStandardPenIsReadByItsDescriptor) {
   EXPECT_NEAR(in_degrees(*pen->tilt_y), -30, 1e-12);
   EXPECT_EQ(read(report({7, 0x18, 0, 0, 0, 0, 0, 0, 0, 0}))->tool, PenTool::rubber);  // turned round, near
   EXPECT_EQ(read(report({7, 0x00, 0, 0, 0, 0, 0, 0, 0, 0}))->tool, PenTool::none);
+}
+
+// Without its pressure a pen that touches would be one pressed to the full.
+TEST_F(HidPen, AStandardReportCutShortIsNoSample) {
+  const Transfer down = report({7, 0x13, 0x88, 0x13, 0x10, 0x27, 0xff, 0x1f, 0x1e, 0xe2});
+  open(standard_tablet(), down);
+  for (std::size_t kept = 0; kept < down.payload.size(); ++kept) {
+    Transfer cut = down;
+    cut.payload.resize(kept);
+    EXPECT_FALSE(read(cut).has_value()) << kept;
+    EXPECT_EQ(decoder_->counts().malformed, kept + 1);
+  }
+  Transfer longer = down;  // some devices fill their reports up
+  longer.payload.resize(64);
+  EXPECT_EQ(read(longer)->pressure, Fraction(1));
+}
+
+// Each report of a descriptor is a layout of its own, however they are interleaved in it.
+TEST_F(HidPen, TwoPensOfOneDescriptor) {
+  const auto position = [](unsigned number) {
+    return octets({0x85, number, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02});
+  };
+  const auto tip = [](unsigned number) {
+    return octets({0x85, number, 0x05, 0x0d, 0x09, 0x42, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02});
+  };
+  DeviceDescription d = device(0x28bd, 0x904);
+  d.hid_descriptor = octets({0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x15, 0x00, 0x25, 0x7f});
+  for (const auto& part : {position(9), position(4), tip(4), tip(9), octets({0xc0})})
+    d.hid_descriptor.insert(d.hid_descriptor.end(), part.begin(), part.end());
+  open(d, report({4, 1, 2, 0}));
+  const auto fourth = read(report({4, 10, 20, 1}));
+  const auto ninth = read(report({9, 30, 40, 0}));
+  ASSERT_TRUE(fourth && ninth);
+  EXPECT_TRUE(fourth->in_contact);
+  EXPECT_EQ(fourth->x_counts, 10);
+  EXPECT_FALSE(ninth->in_contact);
+  EXPECT_EQ(ninth->y_counts, 40);
+  EXPECT_FALSE(read(report({5, 30, 40, 0})).has_value());
+  EXPECT_EQ(decoder_->counts().unknown, 1U);
 }
 
 TEST_F(HidPen, BytesOfAnyKindAreSafe) {

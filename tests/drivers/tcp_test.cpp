@@ -13,7 +13,7 @@
 namespace fude {
 namespace {
 
-constexpr Duration patience = std::chrono::seconds(20);  // of a test that would otherwise hang
+constexpr Duration patience = std::chrono::minutes(5);  // of a test that would otherwise hang
 
 std::unique_ptr<TcpServer> server(TcpServer::Options options = {}) {
   auto opened = TcpServer::open(std::move(options));

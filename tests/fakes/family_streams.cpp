@@ -16,6 +16,7 @@
 #include "drivers/p5glove/p5glove_decoder.h"
 #include "drivers/polhemus/polhemus_decoder.h"
 #include "drivers/spacemouse/spacemouse_decoder.h"
+#include "drivers/tablet/hid_pen_decoder.h"
 #include "drivers/tablet/tablet_decoder.h"
 #include "drivers/touch/touch_decoder.h"
 #include "drivers/ultrasonic/ultrasonic_decoder.h"
@@ -55,6 +56,16 @@ DeviceDescription tablet() {
   device.axes = {{.code = ABS_X, .maximum = 10000},
                  {.code = ABS_Y, .maximum = 10000},
                  {.code = ABS_PRESSURE, .maximum = 1023}};
+  return device;
+}
+
+DeviceDescription raw_pen(std::uint16_t vendor, std::uint16_t product,
+                          std::vector<std::byte> descriptor = {}) {
+  DeviceDescription device;
+  device.transport = "hidraw";
+  device.vendor = vendor;
+  device.product = product;
+  device.hid_descriptor = std::move(descriptor);
   return device;
 }
 
@@ -168,6 +179,30 @@ std::vector<std::byte> glove_report(unsigned i) {
   return report;
 }
 
+std::vector<std::byte> intuos_enter() { return octets({2, 0xc2, 0x80, 0x22, 0x48, 0x10, 0xf7, 0x31, 0, 0}); }
+
+std::vector<std::byte> intuos_report(unsigned i) {
+  return octets({2, 0xe1, 0x20, i % 256, 0x10, 0x9d, 20 + i % 200, 0x1b, 0x55, 0x61});
+}
+
+std::vector<std::byte> huion_report(unsigned i) {
+  return octets({8, 0x81, i % 256, 0x46, 0x06, 0x3c, i % 256, 0x0f, 0, 0, 0x10, 0xf0});
+}
+
+// Tip, barrel, eraser, invert and in range; x and y of 10000 to ten centimetres; pressure; tilt.
+std::vector<std::byte> standard_pen_descriptor() {
+  return octets({0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x07, 0x09, 0x20, 0xa1, 0x00, 0x09, 0x42, 0x09,
+                 0x44, 0x09, 0x45, 0x09, 0x3c, 0x09, 0x32, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x05,
+                 0x81, 0x02, 0x95, 0x03, 0x81, 0x03, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x55, 0x0e, 0x65,
+                 0x11, 0x35, 0x00, 0x46, 0xe8, 0x03, 0x26, 0x10, 0x27, 0x75, 0x10, 0x95, 0x02, 0x81, 0x02,
+                 0x65, 0x00, 0x05, 0x0d, 0x09, 0x30, 0x26, 0xff, 0x1f, 0x95, 0x01, 0x81, 0x02, 0x09, 0x3d,
+                 0x09, 0x3e, 0x15, 0xc4, 0x25, 0x3c, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0, 0xc0});
+}
+
+std::vector<std::byte> standard_pen_report(unsigned i) {
+  return octets({7, 0x11, i % 256, 0x13, 0x10, 0x17, i % 256, 0x0f, 0x1e, 0xe2});
+}
+
 std::vector<std::byte> pen_frame(unsigned i) {
   std::vector<EvdevEvent> events;
   if (i == 0) events = {{EV_KEY, BTN_TOOL_PEN, 1}, {EV_KEY, BTN_TOUCH, 1}};
@@ -244,6 +279,18 @@ std::vector<FamilyStream> family_streams(unsigned count) {
                  .decoder = [] { return std::make_unique<TabletDecoder>(tablet()); },
                  .reports = repeated(count, TransferKind::evdev_frame, 0, pen_frame),
                  .from_kernel = true});
+  all.push_back({.name = "Intuos Pro, raw",
+                 .decoder = [] { return std::make_unique<HidPenDecoder>(raw_pen(0x056a, 0x0314)); },
+                 .introduction = {from_device(TransferKind::hid_report, intuos_enter())},
+                 .reports = repeated(count, TransferKind::hid_report, 0, intuos_report)});
+  all.push_back({.name = "Huion, raw",
+                 .decoder = [] { return std::make_unique<HidPenDecoder>(raw_pen(0x256c, 0x006d)); },
+                 .reports = repeated(count, TransferKind::hid_report, 0, huion_report)});
+  all.push_back(
+      {.name = "standard pen, raw",
+       .decoder =
+           [] { return std::make_unique<HidPenDecoder>(raw_pen(0x28bd, 0x0904, standard_pen_descriptor())); },
+       .reports = repeated(count, TransferKind::hid_report, 0, standard_pen_report)});
   all.push_back({.name = "touch surface",
                  .decoder = [] { return std::make_unique<TouchDecoder>(touch_surface()); },
                  .reports = repeated(count, TransferKind::evdev_frame, 0, touch_frame),

@@ -27,6 +27,13 @@ std::vector<std::byte> ultrasonic_pulse(unsigned i);
 std::vector<std::byte> joycon_report(unsigned i);
 // P5 Glove: bends that change, one light that moves.
 std::vector<std::byte> glove_report(unsigned i);
+// Raw reports of pens that draw: an Intuos Pro's behind the one that tells its tool, a Huion's, and those of
+// any that follow the standard, number 7, by this descriptor.
+std::vector<std::byte> intuos_enter();
+std::vector<std::byte> intuos_report(unsigned i);
+std::vector<std::byte> huion_report(unsigned i);
+std::vector<std::byte> standard_pen_descriptor();
+std::vector<std::byte> standard_pen_report(unsigned i);
 // Frames of the kernel: a pen that draws, a finger that slides; both are there from frame 0 on.
 std::vector<std::byte> pen_frame(unsigned i);
 std::vector<std::byte> touch_frame(unsigned i);

@@ -10,6 +10,7 @@
 #include "drivers/transport/hidraw_source.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/byte_literals.h"
+#include "tests/lab/patience.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/replugs.h"
 #include "tests/lab/scripted_device.h"
@@ -79,7 +80,8 @@ TEST(Hidraw, ADialogueIsRecordedAsItWas) {
   EXPECT_EQ(transfers[1].payload, bytes({2, 10, 20, 30, 40}));
   EXPECT_EQ(transfers[2].payload, report(2));
   // The output report travels to the device's thread by itself.
-  for (int tries = 0; tries < 1000 && hid.device->outputs().empty(); ++tries) usleep(10000);
+  for (const Timestamp end = patience(); hid.device->outputs().empty() && monotonic_now() < end;)
+    usleep(1000);
   EXPECT_EQ(hid.device->outputs(), std::vector<Bytes>{bytes({3, 1, 2, 3, 4})});
 }
 

@@ -8,6 +8,6 @@
 namespace fude::lab {
 
 // Only so that a failure ends; long, for the machine under the guest may stop it for a while.
-inline Timestamp patience() { return monotonic_now() + std::chrono::seconds(60); }
+inline Timestamp patience() { return monotonic_now() + std::chrono::minutes(5); }
 
 }  // namespace fude::lab

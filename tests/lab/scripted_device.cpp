@@ -26,8 +26,16 @@ void put(Bytes& to, std::uint32_t value, int width) {
 std::uint32_t lay_out(const ScriptedInterface& interface, bool high_speed, Bytes& to) {
   std::uint32_t count = 1;
   const auto endpoints = static_cast<std::uint32_t>(interface.endpoints.size());
-  for (const std::uint32_t byte : {9u, 4u, 0u, 0u, endpoints, std::uint32_t{interface.usb_class}, 0u, 0u, 1u})
+  const std::uint32_t usb_class = interface.usb_class, subclass = interface.subclass,
+                      protocol = interface.protocol;
+  for (const std::uint32_t byte : {9u, 4u, 0u, 0u, endpoints, usb_class, subclass, protocol, 1u})
     put(to, byte, 1);
+  // The kernel's cdc-acm refuses an interface with nothing behind it, and FunctionFS knows no descriptors of
+  // its class: the association of the interface with itself is one that both let pass.
+  if (usb_class == USB_CLASS_COMM) {
+    ++count;
+    for (const std::uint32_t byte : {8u, 0x0bu, 0u, 1u, usb_class, subclass, protocol, 0u}) put(to, byte, 1);
+  }
   if (!interface.hid_descriptor.empty()) {
     ++count;
     for (const std::uint32_t byte : {9u, 0x21u, 0x11u, 0x01u, 0u, 1u, 0x22u}) put(to, byte, 1);

@@ -29,6 +29,8 @@ struct ScriptedInterface {
   std::uint8_t usb_class = 0xff;
   std::vector<ScriptedEndpoint> endpoints;
   Bytes hid_descriptor;  // of a HID device (usb_class 3): its report descriptor
+  std::uint8_t subclass = 0;
+  std::uint8_t protocol = 0;
 };
 
 // A request to the interface or, of a vendor, to the device. To the host (bit 7 of the first byte): what it

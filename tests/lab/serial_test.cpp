@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -9,11 +10,10 @@
 #include "drivers/transport/serial_source.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/byte_literals.h"
-#include "tests/lab/gadget_port.h"
 #include "tests/lab/reopened.h"
 #include "tests/lab/replugs.h"
+#include "tests/lab/scripted_port.h"
 #include "tests/lab/session_recording.h"
-#include "tests/lab/usb_gadget.h"
 
 namespace fude::lab {
 namespace {
@@ -21,11 +21,8 @@ namespace {
 constexpr int baud = 115200;
 
 // fude's ultrasonic receiver is known by pid.codes' second number for tests.
-struct Receiver {
-  Receiver() : gadget({0x1209, 0x0002, "SOUND1", "ultrasonic receiver"}, 0) { gadget.add("acm.lab"); }
-  UsbGadget gadget;
-  const std::string id = "1209:0002:SOUND1";
-};
+const UsbIdentity receiver{0x1209, 0x0002, "SOUND1", "ultrasonic receiver"};
+const std::string id = "1209:0002:SOUND1";
 
 Bytes received(const std::vector<Transfer>& transfers) {
   Bytes all;
@@ -35,8 +32,8 @@ Bytes received(const std::vector<Transfer>& transfers) {
 }
 
 TEST(Serial, EveryByteGoesThroughAsItIs) {
-  Receiver receiver;
-  const DeviceNode node = attached_node(NodeKind::serial, receiver.id, [&] { receiver.gadget.plug(); });
+  std::optional<ScriptedPort> port;
+  const DeviceNode node = attached_node(NodeKind::serial, id, [&] { port.emplace(receiver, 0); });
   EXPECT_EQ(node.description.name, "ultrasonic receiver");
   EXPECT_EQ(node.description.transport, "serial");
   auto source = SerialSource::open(node.path, baud);
@@ -45,15 +42,14 @@ TEST(Serial, EveryByteGoesThroughAsItIs) {
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().fault, Fault::busy);
 
-  GadgetPort port(receiver.gadget);
   Bytes all;
   for (unsigned value = 0; value < 256; ++value) all.push_back(static_cast<std::byte>(value));
   SessionRecording recording(node.description);
-  ASSERT_TRUE(port.send(all));
+  ASSERT_TRUE(port->send(all));
   for (std::size_t size = 0; size < all.size(); size += recording.last().payload.size())
     ASSERT_TRUE(recording.drain_one(**source));
   ASSERT_TRUE((*source)->write(to_device(TransferKind::serial, all)));
-  EXPECT_EQ(port.receive(all.size()), all);
+  EXPECT_EQ(port->receive(all.size()), all);
   const auto transfers = recording.finish();
   EXPECT_EQ(received(transfers), all);
   EXPECT_EQ(transfers.at(0).kind, TransferKind::serial);
@@ -63,29 +59,27 @@ TEST(Serial, EveryByteGoesThroughAsItIs) {
 // What the device had written but the wire had not carried when it was pulled out is truly lost: each life
 // holds the beginning of what was sent in it, whole.
 TEST(Serial, PulledOutAndPutBackInMidStream) {
-  Receiver receiver;
-  receiver.gadget.plug();
-  ReturningSource source = returning(NodeKind::serial, receiver.id,
-                                     [](const auto& path) { return SerialSource::open(path, baud); });
+  ScriptedPort port(receiver, 0);
+  ReturningSource source =
+      returning(NodeKind::serial, id, [](const auto& path) { return SerialSource::open(path, baud); });
   DeviceDescription described;
-  described.id = receiver.id;
+  described.id = id;
   SessionRecording recording(described);
   std::vector<Bytes> sent;
   unsigned count = 0;
   for (int life = 0; life <= replugs(); ++life) {
-    if (life > 0) receiver.gadget.plug();
+    if (life > 0) port.plug();
     const std::size_t begun = recording.size();
     ASSERT_EQ(recording.drain_until(source, begun + 1), begun + 1) << "life " << life;
     sent.emplace_back();
     std::thread stream([&] {
-      GadgetPort port(receiver.gadget);
       for (Bytes frame = numbered(count, 30); port.send(frame); frame = numbered(++count, 30)) {
         sent.back().insert(sent.back().end(), frame.begin(), frame.end());
         usleep(1000);  // as devices do, some thousand a second
       }
     });
     recording.drain_until(source, begun + 5 + static_cast<std::size_t>(life % 7));
-    receiver.gadget.unplug();
+    port.unplug();
     stream.join();
     while (recording.last().kind != TransferKind::unplugged)
       ASSERT_TRUE(recording.drain_one(source))

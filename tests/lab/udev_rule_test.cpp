@@ -3,16 +3,16 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/transport/udev_device.h"
 #include "tests/lab/attached_node.h"
 #include "tests/lab/attached_pen.h"
 #include "tests/lab/byte_literals.h"
-#include "tests/lab/scripted_device.h"
+#include "tests/lab/scripted_port.h"
 #include "tests/lab/uhid_device.h"
 #include "tests/lab/uinput_pen.h"
-#include "tests/lab/usb_gadget.h"
 
 namespace fude::lab {
 namespace {
@@ -51,10 +51,11 @@ TEST(UdevRule, PensAndSerialPorts) {
   std::unique_ptr<UinputPen> pen;
   const DeviceNode found = attached_pen([&] { pen = std::make_unique<UinputPen>("lab pen"); });
   EXPECT_TRUE(user_may_open("input", found.path));
-  UsbGadget receiver({0x1209, 0x0002, "SOUND2", "ultrasonic receiver"}, 0);
-  receiver.add("acm.lab");
-  const DeviceNode port = attached_node(NodeKind::serial, "1209:0002:SOUND2", [&] { receiver.plug(); });
-  EXPECT_TRUE(user_may_open("tty", port.path));
+  std::optional<ScriptedPort> port;
+  const DeviceNode node = attached_node(NodeKind::serial, "1209:0002:SOUND2", [&] {
+    port.emplace(UsbIdentity{0x1209, 0x0002, "SOUND2", "ultrasonic receiver"}, 0);
+  });
+  EXPECT_TRUE(user_may_open("tty", node.path));
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <linux/input-event-codes.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <vector>
 
 #include "drivers/transport/evdev_source.h"
 #include "tests/lab/attached_pen.h"
+#include "tests/lab/patience.h"
 
 namespace fude::lab {
 namespace {
@@ -58,12 +58,12 @@ TEST(UinputDevices, StandAsDescribedAndSendWhatTheyAreGiven) {
     sent.push_back({{EV_ABS, ABS_X, 1234 + i}, {EV_ABS, ABS_Y, i % 2}, {EV_SYN, SYN_REPORT, 0}});
   for (const auto& frame : sent) {
     ASSERT_TRUE(device->send(frame));
-    const auto read = (*source)->read(monotonic_now() + std::chrono::seconds(10));
+    const auto read = (*source)->read(patience());
     ASSERT_TRUE(read && *read);
     EXPECT_EQ((*read)->payload, pack_events(frame));
   }
   device.reset();
-  const auto gone = (*source)->read(monotonic_now() + std::chrono::seconds(10));
+  const auto gone = (*source)->read(patience());
   ASSERT_TRUE(gone && *gone);
   EXPECT_EQ((*gone)->kind, TransferKind::unplugged);
 }

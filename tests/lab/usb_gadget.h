@@ -24,7 +24,7 @@ class UsbGadget {
   UsbGadget(const UsbGadget&) = delete;
   UsbGadget& operator=(const UsbGadget&) = delete;
 
-  // A function by its kernel name ("acm.lab", "ffs.lab"); before plug().
+  // A function by its kernel name ("ffs.lab"); before plug().
   void add(const std::string& function);
   std::filesystem::path function(const std::string& name) const { return folder_ / "functions" / name; }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 #include <umockdev.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -50,6 +51,15 @@ void draw(MockTablet& tablet, int x) {
   tablet.send(events);
 }
 
+constexpr Duration patience = std::chrono::minutes(5);  // of a test that would otherwise hang
+
+std::filesystem::path scratch(const std::string& name) {
+  const auto path =
+      std::filesystem::path(testing::TempDir()) / ("fude-" + std::to_string(getpid()) + "-" + name);
+  std::filesystem::remove(path);
+  return path;
+}
+
 struct Heard {
   std::mutex mutex;
   std::vector<std::string> appeared;
@@ -70,7 +80,7 @@ struct Heard {
   }
   // Waits for another thread; the limit only ends a test that has failed.
   bool until(const std::function<bool()>& come) {
-    for (int i = 0; i < 10000; ++i) {
+    for (const Timestamp end = monotonic_now() + patience; monotonic_now() < end;) {
       {
         const std::lock_guard lock(mutex);
         if (come()) return true;
@@ -142,8 +152,7 @@ TEST_F(LiveDevices, ATabletThatStaysWhileTheMachineSleepsGoesOnAfterAGap) {
 }
 
 TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "recorded.fude";
-  std::filesystem::remove(file);
+  const std::filesystem::path file = scratch("recorded.fude");
   MockTablet tablet(testbed_.get(), pen("1"), 5);
   auto recording = RecordingSession::start(file, {}, [](const std::string&) {});
   ASSERT_TRUE(recording) << recording.error().message;
@@ -181,7 +190,6 @@ TEST_F(LiveDevices, ARecordingHoldsWhatWasDrawnAndItsReceiptAddsUp) {
 // One program serves a pose over VRPN, the relay reads it as `fude serve` does, and a third program has it
 // over OpenIGTLink.
 TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
-  const Duration patience = std::chrono::seconds(20);
   PoseServers tracker({.openigtlink = 0, .vrpn = 0});
   PoseSample seen;
   seen.tracker_from_tool = {Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(0.25, -0.5, 1)};
@@ -221,8 +229,7 @@ TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
 // The whole dialogue with an arm is in the session, and decodes to what was felt: no force, for nobody
 // paints.
 TEST_F(LiveDevices, AnArmIsRecordedByItsLoop) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "arm.fude";
-  std::filesystem::remove(file);
+  const std::filesystem::path file = scratch("arm.fude");
   std::atomic<int> asked{0};
   NamedDevice arm;
   arm.family = find_family("falcon", "usb");
@@ -258,7 +265,7 @@ TEST_F(LiveDevices, AnArmIsRecordedByItsLoop) {
 }
 
 TEST_F(LiveDevices, WithoutATabletNoSessionIsMade) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "none.fude";
+  const std::filesystem::path file = scratch("none.fude");
   const auto recording = RecordingSession::start(file, {}, [](const std::string&) {});
   ASSERT_FALSE(recording);
   EXPECT_EQ(recording.error().fault, Fault::not_found);

@@ -1,6 +1,7 @@
 #include "rig/fuse_session.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -204,7 +205,8 @@ TEST(FuseSession, TwoEmittersGiveTheWholeOrientation) {
 TEST(FuseSession, AnImportedRecording) {
   const std::string name = optical_recordings[0];
   REQUIRE_RECORDING(name);
-  const auto file = std::filesystem::path(testing::TempDir()) / "fuse-imported.fude";
+  const auto file = std::filesystem::path(testing::TempDir()) /
+                    ("fude-fuse-imported-" + std::to_string(getpid()) + ".fude");
   ASSERT_TRUE(import_session(recordings() / name, file, {.overwrite = true}).has_value());
   const auto session = read_session(file);
   ASSERT_TRUE(session.has_value());

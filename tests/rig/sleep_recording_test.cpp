@@ -1,6 +1,7 @@
 // A machine that sleeps in the middle of a recording: the stream goes on in the same session, and the gap is
 // seen in it.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -62,7 +63,8 @@ class Handle final : public ByteSource {
 };
 
 TEST(SleepRecording, TheStreamGoesOnAfterAGap) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "slept.fude";
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("fude-slept-" + std::to_string(getpid()) + ".fude");
   std::filesystem::remove(file);
   std::atomic<std::int64_t> asleep_s{0};
   const auto awake = [] { return monotonic_now().time_since_epoch(); };
