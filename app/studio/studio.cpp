@@ -80,7 +80,7 @@ class Studio {
     image_.emplace(columns_, rows_, setup_.settings.palette);
     view_.window = window_->size();
     view_.fit(sheet_mm_);
-    start_ = now();
+    start_ = looked_ = now();
     while (!quitting_ && window_->begin_frame()) {
       view_.window = window_->size();
       inject();
@@ -233,11 +233,18 @@ class Studio {
     mouse_shown_ = true;
   }
 
+  // The scripted hand waits for a window that is slow: what it did shows before it goes on.
   void inject() {
-    while (next_scripted_ < setup_.script.size() &&
-           seconds(now() - start_) >= setup_.script[next_scripted_].at_s && !quitting_) {
-      const ScriptedEvent& event = setup_.script[next_scripted_++];
-      hand_time_ = start_ + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(event.at_s));
+    constexpr Duration longest_frame = std::chrono::milliseconds(50);
+    const Timestamp present = now();
+    scripted_ += std::min(present - looked_, longest_frame);
+    looked_ = present;
+    while (next_scripted_ < setup_.script.size() && !quitting_) {
+      const ScriptedEvent& event = setup_.script[next_scripted_];
+      const auto at = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(event.at_s));
+      if (at > scripted_) break;
+      ++next_scripted_;
+      hand_time_ = present - (scripted_ - at);
       handle(event.what);
     }
     hand_time_.reset();
@@ -316,6 +323,8 @@ class Studio {
   View view_;
   Timestamp start_{};
   std::optional<Timestamp> hand_time_;  // of a scripted event; none: the present
+  Duration scripted_{0};                // how far the script is
+  Timestamp looked_{};                  // when that was last moved on
   std::size_t next_scripted_ = 0;
   std::size_t next_pen_ = 0;
   std::size_t next_action_ = 0;
