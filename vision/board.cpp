@@ -81,6 +81,65 @@ std::vector<cv::Point2f> chessboard_corners(const cv::Mat& picture, const Board&
   return corners;
 }
 
+// Mean grey about a place; none at the edge of the picture or beyond it.
+std::optional<double> grey_at(const cv::Mat& picture, const cv::Point2d& place) {
+  const int x = static_cast<int>(std::lround(place.x)), y = static_cast<int>(std::lround(place.y));
+  if (x < 1 || y < 1 || x + 1 >= picture.cols || y + 1 >= picture.rows) return std::nullopt;
+  return cv::mean(picture(cv::Rect(x - 1, y - 1, 3, 3)))[0];
+}
+
+// The corners of a chessboard as a grid, and where squares of it and beyond it have their middles.
+class CornerGrid {
+ public:
+  CornerGrid(const std::vector<cv::Point2f>& corners, int columns, int rows)
+      : corners_(corners), columns_(columns), rows_(rows) {}
+
+  // Of the square between corners (x, y) and (x + 1, y + 1). Beyond the corners, by up to two squares, a row
+  // goes on as a parabola through its last three: a lens bends it.
+  cv::Point2d middle(int x, int y) const {
+    const auto at_row = [&](int row) { return along(x + 0.5, columns_, [&](int i) { return at(i, row); }); };
+    return along(y + 0.5, rows_, at_row);
+  }
+
+ private:
+  cv::Point2d at(int x, int y) const { return corners_[static_cast<std::size_t>(y * columns_ + x)]; }
+
+  template <class Place>
+  static cv::Point2d along(double where, int count, Place place) {
+    const int middle = std::clamp(static_cast<int>(std::lround(where)), 1, count - 2);
+    const double s = where - middle;
+    return place(middle - 1) * (s * (s - 1) / 2) + place(middle) * (1 - s * s) +
+           place(middle + 1) * (s * (s + 1) / 2);
+  }
+
+  const std::vector<cv::Point2f>& corners_;
+  int columns_, rows_;
+};
+
+// How much brighter odd squares are than even ones, from first_x to last_x and first_y to last_y: the square
+// between corners (0, 0) and (1, 1) is even. 0 where the picture does not show both sorts.
+double contrast(const cv::Mat& picture, const CornerGrid& grid, int first_x, int last_x, int first_y,
+                int last_y) {
+  double sum[2] = {}, count[2] = {};
+  for (int y = first_y; y <= last_y; ++y)
+    for (int x = first_x; x <= last_x; ++x)
+      if (const auto grey = grey_at(picture, grid.middle(x, y))) {
+        const int odd = std::abs(x + y) % 2;
+        sum[odd] += *grey;
+        ++count[odd];
+      }
+  return count[0] > 0 && count[1] > 0 ? sum[1] / count[1] - sum[0] / count[0] : 0;
+}
+
+// Squares beyond the outermost that were named, where a board has its rim.
+bool board_goes_on(const cv::Mat& picture, const CornerGrid& grid, const Board& board, double inside) {
+  const int right = board.columns, below = board.rows;
+  const double beyond[] = {
+      contrast(picture, grid, -2, -2, 0, below - 2), contrast(picture, grid, right, right, 0, below - 2),
+      contrast(picture, grid, 0, right - 2, -2, -2), contrast(picture, grid, 0, right - 2, below, below)};
+  return std::ranges::any_of(beyond, [&](double side) { return std::abs(side) > 0.5 * std::abs(inside); });
+}
+
 std::vector<cv::Point2f> charuco_corners(const cv::Mat& picture, const Board& board,
                                          std::vector<int>& numbers) {
   const auto dictionary = cv::aruco::getPredefinedDictionary(find_dictionary(board.dictionary)->number);
@@ -125,6 +184,10 @@ int corners_of(const Board& board) {
                                              : (board.columns - 1) * (board.rows - 1);
 }
 
+bool has_one_way_up(const Board& board) {
+  return board.kind == BoardKind::charuco || (board.columns + board.rows) % 2 == 1;
+}
+
 Eigen::Vector2d corner_place_m(const Board& board, int number) {
   const int across = board.kind == BoardKind::chessboard ? board.columns : board.columns - 1;
   return board.square_m * Eigen::Vector2d(number % across, number / across);
@@ -145,6 +208,12 @@ std::optional<BoardView> find_board(const GreyImage& image, const Board& board) 
     if (static_cast<int>(corners.size()) < fewest_corners || on_one_line(board, view.corners))
       return std::nullopt;
     refine(picture, corners);
+    if (board.kind == BoardKind::chessboard) {
+      const CornerGrid grid(corners, board.columns, board.rows);
+      const double inside = contrast(picture, grid, 0, board.columns - 2, 0, board.rows - 2);
+      view.goes_on = board_goes_on(picture, grid, board, inside);
+      if (has_one_way_up(board) && inside < 0) std::ranges::reverse(corners);
+    }
   } catch (const cv::Exception&) {
     return std::nullopt;  // OpenCV's own checks of what a hostile picture showed
   }

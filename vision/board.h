@@ -13,7 +13,8 @@
 namespace fude {
 
 // A board's frame: origin in the first inner corner, x along its rows of corners and y along its columns, z
-// into the board away from who looks at it; metres.
+// into the board away from who looks at it; metres. With a row of `columns` from left to right, the first
+// corner is the upper left one: of a chessboard held so that its upper left square is dark.
 struct BoardFrame {};
 
 enum class BoardKind : std::uint8_t { chessboard, charuco };
@@ -34,11 +35,16 @@ Result<void> check(const Board& board);
 Eigen::Vector2d corner_place_m(const Board& board, int number);
 int corners_of(const Board& board);
 
+// Whether a picture tells which corner is the first: not of a chessboard that looks the same upside down, as
+// with an even sum of columns and rows.
+bool has_one_way_up(const Board& board);
+
 // What one picture shows of the board.
 struct BoardView {
   std::string name;                     // of the picture
   std::vector<int> corners;             // numbers of those seen; of a chessboard always all
   std::vector<Eigen::Vector2d> pixels;  // theirs, to a part of a pixel
+  bool goes_on = false;                 // a chessboard has squares beyond those that were named
 };
 
 // None where the board is not seen well enough: a chessboard as a whole, of a ChArUco at least six corners

@@ -12,9 +12,7 @@ namespace fude {
 namespace {
 
 constexpr std::size_t fewest_views = 5;
-constexpr std::size_t most_views = 60;
-constexpr double alike_share = 0.02;  // of the board's length in the picture that its corners have moved
-constexpr int cells_across = 6;       // of the coverage map
+constexpr int cells_across = 6;  // of the coverage map
 constexpr int cells_down = 5;
 constexpr double least_coverage = 0.5;
 constexpr double least_tilt_rad = 15 * 3.14159265358979 / 180;
@@ -162,19 +160,6 @@ double largest_tilt(const std::vector<FittedView>& views) {
   return largest;
 }
 
-bool alike(const BoardView& a, const BoardView& b) {
-  const double length = (a.pixels.back() - a.pixels.front()).norm();
-  double moved = 0;
-  int common = 0;
-  for (std::size_t i = 0; i < a.corners.size(); ++i) {
-    const auto at = std::ranges::find(b.corners, a.corners[i]);
-    if (at == b.corners.end()) continue;
-    moved += (a.pixels[i] - b.pixels[static_cast<std::size_t>(at - b.corners.begin())]).norm();
-    ++common;
-  }
-  return common > 0 && moved < alike_share * length * common;
-}
-
 std::string formatted(const char* format, double value) {
   char text[200];
   std::snprintf(text, sizeof text, format, value);
@@ -189,7 +174,7 @@ Result<CameraProcedure> CameraProcedure::begin(const Board& board) {
 }
 
 CameraProcedure::Progress CameraProcedure::add(const GreyImage& image, const std::string& name) {
-  if (views_.empty() && boardless_.empty()) {
+  if (views_.kept().empty() && boardless_.empty()) {
     width_ = image.width;
     height_ = image.height;
   }
@@ -197,22 +182,20 @@ CameraProcedure::Progress CameraProcedure::add(const GreyImage& image, const std
   if (image.width == width_ && image.height == height_) view = find_board(image, board_);
   if (!view) {
     boardless_.push_back(name);
-  } else if (views_.size() == most_views ||
-             std::ranges::any_of(views_, [&](const BoardView& v) { return alike(v, *view); })) {
-    ++alike_;
   } else {
     view->name = name;
-    views_.push_back(std::move(*view));
+    goes_on_ += view->goes_on;
+    views_.add(std::move(*view));
   }
   Progress progress;
-  progress.views = views_.size();
+  progress.views = views_.kept().size();
   Views all;
-  for (const BoardView& v : views_) {
+  for (const BoardView& v : views_.kept()) {
     all.emplace_back();
     for (const Eigen::Vector2d& pixel : v.pixels) all.back().push_back({0, pixel});
   }
   const std::string cells = coverage_map(all, {std::max(width_, 1), std::max(height_, 1)});
-  const double of_views = std::min(1.0, static_cast<double>(views_.size()) / fewest_views);
+  const double of_views = std::min(1.0, static_cast<double>(views_.kept().size()) / fewest_views);
   progress.covered = std::min(of_views, std::min(1.0, share_covered(cells) / least_coverage));
   if (of_views < 1)
     progress.missing = "more pictures of the board, each with another tilt";
@@ -224,19 +207,19 @@ CameraProcedure::Progress CameraProcedure::add(const GreyImage& image, const std
 CameraCalibration CameraProcedure::finish() const {
   CameraCalibration result;
   result.boardless = boardless_;
-  result.alike = alike_;
+  result.alike = views_.passed_over();
   const auto refused = [&result](std::string reason) {
     result.reason = std::move(reason);
     return result;
   };
-  if (views_.size() < fewest_views)
-    return refused("the board was found in " + std::to_string(views_.size()) + " of " +
-                   std::to_string(views_.size() + boardless_.size()) + " pictures, " +
+  if (views_.kept().size() < fewest_views)
+    return refused("the board was found in " + std::to_string(views_.kept().size()) + " of " +
+                   std::to_string(views_.kept().size() + boardless_.size()) + " pictures, " +
                    std::to_string(fewest_views) +
                    " are needed; give --columns and --rows as printed, and show the whole board");
   const cv::Size size(width_, height_);
   Views counted;
-  for (const BoardView& view : views_) {
+  for (const BoardView& view : views_.kept()) {
     counted.emplace_back();
     for (std::size_t i = 0; i < view.corners.size(); ++i)
       counted.back().push_back({view.corners[i], view.pixels[i]});
@@ -315,6 +298,10 @@ CameraCalibration CameraProcedure::finish() const {
   result.centre_deviation_px = {f.deviations.at<double>(2), f.deviations.at<double>(3)};
   result.coverage = share_covered(result.coverage_map);
   result.tilt_rad = largest_tilt(result.views);
+  if (2 * goes_on_ > views_.kept().size() + views_.passed_over())
+    result.warnings.push_back("the board goes on beyond the " + std::to_string(board_.columns) + " x " +
+                              std::to_string(board_.rows) +
+                              " inner corners that were named: count them again");
   for (const FittedView& view : result.views) {
     if (!view.used)
       result.warnings.push_back(view.name + " is left out: its corners stand " +

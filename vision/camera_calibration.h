@@ -12,6 +12,7 @@
 #include "signal/pose.h"
 #include "signal/result.h"
 #include "vision/board.h"
+#include "vision/different_views.h"
 
 namespace fude {
 
@@ -31,7 +32,7 @@ struct CameraCalibration {
   Eigen::Vector2d centre_deviation_px = Eigen::Vector2d::Zero();
   std::vector<FittedView> views;
   std::vector<std::string> boardless;  // pictures in which no board was found
-  std::size_t alike = 0;               // views passed over
+  std::size_t alike = 0;               // views passed over, or given up for another
   std::vector<double> residuals_px;    // distances, over the corners used
   double held_out_rms_px = 0;          // of views that a fit of the others did not see; corners as distances
   double coverage = 0;                 // share of the picture, in cells, where corners were
@@ -55,7 +56,8 @@ class CameraProcedure {
 
   // Any picture, with the board or without; `name` stands for it in the report. All are of the size of the
   // first: others count as boardless. A view that hardly differs from one before tells nothing new and is
-  // passed over, as are all beyond 60: a film gives thousands.
+  // passed over. Of a film's thousands 60 are kept: a later one takes the place of the one most like another,
+  // where it differs more.
   Progress add(const GreyImage& image, const std::string& name);
 
   // Refused (accepted false, and why): fewer than 5 views of the board, less than half of the picture
@@ -69,9 +71,9 @@ class CameraProcedure {
   Board board_;
   std::int32_t width_ = 0;
   std::int32_t height_ = 0;
-  std::vector<BoardView> views_;
+  DifferentViews views_{60};
   std::vector<std::string> boardless_;
-  std::size_t alike_ = 0;
+  std::size_t goes_on_ = 0;  // views with squares beyond those that were named
 };
 
 }  // namespace fude
