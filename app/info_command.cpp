@@ -33,6 +33,7 @@ void print(const SessionSummary& summary) {
     std::printf("%-8s %-32s %8lld samples %7.1f Hz %4lld gaps  %8.3f s to %8.3f s  %s\n", s.kind.c_str(),
                 s.name.c_str(), static_cast<long long>(s.samples), s.rate_hz, static_cast<long long>(s.gaps),
                 s.start_s, s.end_s, s.units.c_str());
+  for (const std::string& name : summary.calibration) std::printf("calibrated: %s\n", name.c_str());
   std::printf("%.3f s in all; %s\n", summary.duration_s,
               summary.complete ? "complete" : "not closed in good order, all that was written is here");
 }

@@ -14,6 +14,7 @@
 #include "app/progress_line.h"
 #include "capture/session_words.h"
 #include "drivers/transport/waker.h"
+#include "rig/calibration/calibration_store.h"
 #include "rig/named_device.h"
 #include "rig/record_session.h"
 
@@ -122,10 +123,13 @@ bool stand(InterruptWatch& interrupt, const RecordingSession& recording, double 
 
 int record(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
+  std::vector<std::string> warnings;
   RecordingWish wish{.overwrite = options.force,
                      .named = {},
                      .camera = camera_settings(options),
-                     .frames = frame_encoding(options.frames)};
+                     .frames = frame_encoding(options.frames),
+                     .calibrations = calibrations_of_user(warnings)};
+  for (const std::string& warning : warnings) std::fprintf(stderr, "fude: %s\n", warning.c_str());
   for (const std::string& name : options.named) {
     auto device = named_device(name);
     if (!device) return report(device.error());

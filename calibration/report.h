@@ -48,6 +48,8 @@ struct CalibrationReport {
   // What the calibration was made from; the rig's to fill.
   std::string date;                  // UTC, ISO 8601
   std::vector<std::string> devices;  // "vendor:product:serial" each
+  std::string tool;                  // of a tracker, where it holds for that one alone
+  std::string reference;             // the tool whose frame stands for the tracker's
   std::string session;               // the input's identity
 
   void detail(std::string key, FieldValue value) { details.push_back({std::move(key), std::move(value)}); }

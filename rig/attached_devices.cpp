@@ -6,6 +6,7 @@
 
 #include "drivers/camera/camera_decoder.h"
 #include "drivers/falcon/falcon_decoder.h"
+#include "drivers/transport/device_node.h"
 #include "drivers/transport/evdev_source.h"
 #include "drivers/transport/hidraw_source.h"
 #include "drivers/transport/serial_source.h"
@@ -60,6 +61,17 @@ Result<std::vector<AttachedDevice>> attached_devices() {
   }
   std::ranges::sort(devices, {}, &AttachedDevice::node);
   return devices;
+}
+
+Result<void> something_attached() {
+  const auto found = attached_devices();
+  if (!found) return tl::unexpected(found.error());
+  if (found->empty())
+    return failure(Fault::not_found,
+                   "no device that fude knows is plugged in; plug one in, or name one with --add");
+  if (std::ranges::none_of(*found, &AttachedDevice::access))
+    return failure(Fault::no_access, access_advice(found->front().node));
+  return {};
 }
 
 std::unique_ptr<Decoder> open_driver(const FamilyRow& family, const DeviceDescription& device) {

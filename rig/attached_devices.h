@@ -29,6 +29,10 @@ std::optional<AttachedDevice> attached(const DeviceNode& node);
 // Ordered by node. Errors: unsupported where udev does not run.
 Result<std::vector<AttachedDevice>> attached_devices();
 
+// Whether there is anything to read. Errors: not_found where nothing is plugged in, no_access where none may
+// be read, each with what to do.
+Result<void> something_attached();
+
 // A device's driver as the rig runs it: a Falcon's has the user's firmware, and does not poll, for a haptic
 // loop speaks.
 std::unique_ptr<Decoder> open_driver(const FamilyRow& family, const DeviceDescription& device);

@@ -105,6 +105,8 @@ CalibrationReport report_from(const toml::table& table) {
   report.warnings = words_in(table, "warnings");
   report.date = table["date"].value_or("");
   report.devices = words_in(table, "devices");
+  report.tool = table["tool"].value_or("");
+  report.reference = table["reference"].value_or("");
   report.session = table["session"].value_or("");
   return report;
 }
@@ -131,6 +133,8 @@ std::string toml_of(const StoredCalibration& calibration) {
   fields.push_back({"warnings", r.warnings});
   fields.push_back({"date", r.date});
   fields.push_back({"devices", r.devices});
+  fields.push_back({"tool", r.tool});
+  fields.push_back({"reference", r.reference});
   fields.push_back({"session", r.session});
   for (const Field& field : fields) text += line(field);
   text += "n = " + std::to_string(r.n) + "\n";

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "capture/sample_columns.h"
-#include "drivers/transport/device_node.h"
 #include "drivers/transport/waker.h"
 #include "rig/camera_report.h"
 
@@ -14,36 +13,29 @@ namespace {
 // The recorder numbers devices from 1 in the order in which they are added, the rig from 0.
 DeviceNumber number(std::size_t device) { return static_cast<DeviceNumber>(device) + 1; }
 
-// Before the file is made: a session of nothing helps nobody.
-Result<void> something_to_record() {
-  const auto found = attached_devices();
-  if (!found) return tl::unexpected(found.error());
-  if (found->empty())
-    return failure(Fault::not_found,
-                   "no device that fude knows is plugged in; plug one in, or name one with --add");
-  if (std::ranges::none_of(*found, &AttachedDevice::access))
-    return failure(Fault::no_access, access_advice(found->front().node));
-  return {};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
     const std::filesystem::path& session, RecordingWish wish, std::function<void(const std::string&)> warn) {
+  // Before the file is made: a session of nothing helps nobody.
   if (wish.named.empty())
-    if (auto there = something_to_record(); !there) return tl::unexpected(there.error());
+    if (auto there = something_attached(); !there) return tl::unexpected(there.error());
 
   std::error_code ignored;
   if (wish.overwrite && std::filesystem::is_regular_file(session, ignored))
     std::filesystem::remove(session, ignored);
   auto recorder = Recorder::open(session);
   if (!recorder) return tl::unexpected(recorder.error());
-  std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder), wish.frames));
+  std::unique_ptr<RecordingSession> recording(new RecordingSession(std::move(*recorder), wish));
   RecordingSession* raw = recording.get();
   DeviceListener listener;
-  listener.appeared = [raw](std::size_t, const DeviceDescription& device) { raw->begin(device); };
+  listener.appeared = [raw](std::size_t number, const DeviceDescription& device) {
+    raw->begin(device);
+    if (raw->also_.appeared) raw->also_.appeared(number, device);
+  };
   listener.heard = [raw](std::size_t device, const Transfer& transfer, std::span<const Sample> samples) {
     raw->keep(device, transfer, samples);
+    if (raw->also_.heard) raw->also_.heard(device, transfer, samples);
   };
   listener.refused = [warn](const Error& error) { warn(error.message); };
   listener.camera = [raw, warn, asked = wish.camera](std::size_t device, const CameraSettings& given) {
@@ -60,6 +52,7 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::start(
 
 void RecordingSession::begin(const DeviceDescription& device) {
   recorder_->add(device);
+  for (RecordedCalibration& calibration : passport_.begin(device)) recorder_->add(std::move(calibration));
   const std::lock_guard lock(mutex_);
   const auto same = std::ranges::count_if(streams_, [&](const auto& s) {
     return s->name == device.name || s->name.starts_with(device.name + " ");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "capture/picture/frame_encoding.h"
+#include "rig/calibration/passport.h"
 #include "rig/devices.h"
 #include "rig/frame_keeper.h"
 #include "rig/recorder.h"
@@ -36,6 +37,8 @@ struct RecordingWish {
   CameraSettings camera;  // what every camera is asked for
   FrameEncoding frames = FrameEncoding::as_sent;
   SleepWatch sleep;
+  std::vector<StoredCalibration> calibrations;  // the session carries those of the devices that it records
+  DeviceListener also = {};                     // `appeared` and `heard` are told what is recorded
 };
 
 class RecordingSession {
@@ -59,14 +62,19 @@ class RecordingSession {
     StreamMeter meter;
     std::unique_ptr<FrameKeeper> frames;  // null: everything is written as it comes
   };
-  RecordingSession(std::unique_ptr<Recorder> recorder, FrameEncoding frames)
-      : recorder_(std::move(recorder)), frames_(frames) {}
+  RecordingSession(std::unique_ptr<Recorder> recorder, RecordingWish& wish)
+      : recorder_(std::move(recorder)),
+        frames_(wish.frames),
+        passport_(std::move(wish.calibrations)),
+        also_(std::move(wish.also)) {}
   void begin(const DeviceDescription& device);
   std::string name_of(std::size_t device);
   void keep(std::size_t device, const Transfer& transfer, std::span<const Sample> samples);
 
   std::unique_ptr<Recorder> recorder_;
   FrameEncoding frames_;
+  Passport passport_;
+  DeviceListener also_;
   std::mutex mutex_;  // of the list, not of its streams: each is its reader's
   std::vector<std::unique_ptr<Stream>> streams_;
   std::atomic<std::uint64_t> samples_{0};

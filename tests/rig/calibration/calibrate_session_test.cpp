@@ -1,6 +1,6 @@
 // Calibrations of recorded sessions, end to end: other people's recordings with the figures published for
 // them, and files that must not be believed.
-#include "rig/calibrate_session.h"
+#include "rig/calibration/calibrate_session.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,6 +11,9 @@
 #include "calibration/landmarks.h"
 #include "calibration/pivot.h"
 #include "capture/session_writer.h"
+#include "rig/calibration/pivot.h"
+#include "rig/calibration/surface.h"
+#include "rig/calibration/tracker.h"
 #include "rig/import_session.h"
 #include "rig/landmark_file.h"
 #include "tests/fakes/recordings.h"
@@ -20,6 +23,20 @@ namespace fude {
 namespace {
 
 namespace fs = std::filesystem;
+
+Result<CalibrationOutcome> calibrated(const Result<std::unique_ptr<Calibrator>>& calibrator,
+                                      const fs::path& file) {
+  if (!calibrator) return tl::unexpected(calibrator.error());
+  const auto session = file.empty() ? Result<Session>(Session{}) : read_session(file);
+  if (!session) return tl::unexpected(session.error());
+  return calibrate_session(**calibrator, *session);
+}
+
+KnownCalibrations known(const std::vector<fs::path>& files) {
+  auto known = KnownCalibrations::read(files);
+  EXPECT_TRUE(known) << known.error().message;
+  return known ? std::move(*known) : KnownCalibrations{};
+}
 
 class CalibrateSession : public testing::Test {
  protected:
@@ -68,8 +85,7 @@ double number(const Fields& fields, const char* key) {
 // Published: tests/algorithms/test_pivot.py of scikit-surgerycalibration.
 TEST_F(CalibrateSession, TheRecordedPointerGivesItsPublishedTip) {
   REQUIRE_RECORDING("tracker/ucl_pivot_poses.csv");
-  const auto outcome =
-      calibrate_session({.procedure = "pivot", .session = imported("tracker/ucl_pivot_poses.csv")}, {});
+  const auto outcome = calibrated(pivot_calibrator({}), imported("tracker/ucl_pivot_poses.csv"));
   ASSERT_TRUE(outcome) << outcome.error().message;
   const CalibrationReport& r = outcome->report;
   ASSERT_TRUE(outcome->result) << r.reason;
@@ -101,7 +117,7 @@ TEST_F(CalibrateSession, TheRecordedPointerTransposedIsRefusedByName) {
     Eigen::Quaterniond& q = samples.back().tracker_from_tool.rotation;
     q = q.conjugate();
   }
-  const auto outcome = calibrate_session({.procedure = "pivot", .session = recorded(samples)}, {});
+  const auto outcome = calibrated(pivot_calibrator({}), recorded(samples));
   ASSERT_TRUE(outcome);
   EXPECT_FALSE(outcome->result);
   EXPECT_NE(outcome->report.reason.find("is the matrix transposed?"), std::string::npos)
@@ -111,12 +127,10 @@ TEST_F(CalibrateSession, TheRecordedPointerTransposedIsRefusedByName) {
 // The tip as published (PlusLibData, PlusDeviceSet_Server_Saved_RefToRAS.xml); it goes along two edges.
 TEST_F(CalibrateSession, TheRecordedStylusLiesOnAPlane) {
   REQUIRE_RECORDING("tracker/plus_reference_stylus_touch.csv");
-  const auto outcome = calibrate_session({.procedure = "surface",
-                                          .session = imported("tracker/plus_reference_stylus_touch.csv"),
-                                          .tool = "stylus",
-                                          .reference = "ref",
-                                          .tip_m = 1e-3 * Eigen::Vector3d(0.857485, 0.25183, 79.097)},
-                                         {});
+  const auto outcome = calibrated(
+      surface_calibrator(
+          {.tool = {"stylus", "ref"}, .tip_m = 1e-3 * Eigen::Vector3d(0.857485, 0.25183, 79.097)}, {}),
+      imported("tracker/plus_reference_stylus_touch.csv"));
   ASSERT_TRUE(outcome) << outcome.error().message;
   ASSERT_TRUE(outcome->result) << outcome->report.reason;
   EXPECT_LE(outcome->report.rms, 0.6);
@@ -125,8 +139,7 @@ TEST_F(CalibrateSession, TheRecordedStylusLiesOnAPlane) {
 }
 
 TEST_F(CalibrateSession, ASurfaceNeedsATip) {
-  const auto outcome =
-      calibrate_session({.procedure = "surface", .session = recorded(ScriptedPivot{}.samples())}, {});
+  const auto outcome = calibrated(surface_calibrator({}, {}), recorded(ScriptedPivot{}.samples()));
   ASSERT_FALSE(outcome);
   EXPECT_NE(outcome.error().message.find("--tip-mm"), std::string::npos);
 }
@@ -142,11 +155,11 @@ class CalibrateTracker : public CalibrateSession {
 };
 
 TEST_F(CalibrateTracker, TwoListsGiveTheMotionWithoutASession) {
-  const auto outcome =
-      calibrate_session({.procedure = "tracker",
-                         .landmarks = listing("list.csv", list_),
-                         .measured = listing("measured.csv", "z,50,7,0\no,0,7,0\nx,0,107,0\ny,0,7,200\n")},
-                        {});
+  const auto outcome = calibrated(
+      tracker_calibrator({.landmarks = listing("list.csv", list_),
+                          .measured = listing("measured.csv", "z,50,7,0\no,0,7,0\nx,0,107,0\ny,0,7,200\n")},
+                         {}),
+      {});
   ASSERT_TRUE(outcome && outcome->result) << (outcome ? outcome->report.reason : outcome.error().message);
   const auto r = registration_from(*outcome->result);
   ASSERT_TRUE(r);
@@ -161,11 +174,8 @@ TEST_F(CalibrateTracker, TouchesInTheOrderOfTheListGiveTheMotion) {
     for (int i = 0; i < 20; ++i)
       samples.push_back(
           pose_sample({Eigen::Quaterniond::Identity(), place - tip}, 0.02 * double(samples.size())));
-  const auto outcome = calibrate_session({.procedure = "tracker",
-                                          .session = recorded(samples),
-                                          .tip_m = tip,
-                                          .landmarks = listing("list.csv", list_)},
-                                         {});
+  const auto outcome = calibrated(
+      tracker_calibrator({.tip_m = tip, .landmarks = listing("list.csv", list_)}, {}), recorded(samples));
   ASSERT_TRUE(outcome && outcome->result) << (outcome ? outcome->report.reason : outcome.error().message);
   EXPECT_LT((*registration_from(*outcome->result) * places[2] - Eigen::Vector3d(0, 0.2, 0)).norm(), 1e-6);
 }
@@ -199,11 +209,11 @@ TEST_F(CalibrateSession, AReferenceThatMovesStandsForTheTracker) {
     both.push_back(brush);
   }
   const fs::path session = recorded(both);
-  const auto seen = calibrate_session({.procedure = "pivot", .session = session, .reference = "easel"}, {});
+  const auto seen = calibrated(pivot_calibrator({.tool = {.reference = "easel"}}), session);
   ASSERT_TRUE(seen && seen->result) << (seen ? seen->report.reason : seen.error().message);
   EXPECT_LT((point(*seen->result, "tip_m") - script.tip_m).norm(), 1e-6);
   EXPECT_LT((1e-3 * point(seen->report.details, "pivot_mm") - script.pivot_m).norm(), 1e-6);
-  const auto ambiguous = calibrate_session({.procedure = "pivot", .session = session}, {});
+  const auto ambiguous = calibrated(pivot_calibrator({}), session);
   ASSERT_FALSE(ambiguous);
   EXPECT_NE(ambiguous.error().message.find("--tool (easel, brush)"), std::string::npos)
       << ambiguous.error().message;
@@ -211,11 +221,9 @@ TEST_F(CalibrateSession, AReferenceThatMovesStandsForTheTracker) {
 
 TEST_F(CalibrateSession, ACalibrationOfAnotherDeviceIsNotUsed) {
   const auto samples = ScriptedPivot{}.samples();
-  const auto other =
-      calibrate_session({.procedure = "pivot", .session = recorded(samples, "0f44:ff20:B2")}, {});
+  const auto other = calibrated(pivot_calibrator({}), recorded(samples, "0f44:ff20:B2"));
   ASSERT_TRUE(other && other->result);
-  const auto outcome = calibrate_session(
-      {.procedure = "pivot", .session = recorded(samples), .earlier = {stored(*other)}}, {});
+  const auto outcome = calibrated(surface_calibrator({}, known({stored(*other)})), recorded(samples));
   ASSERT_FALSE(outcome);
   EXPECT_NE(outcome.error().message.find("0f44:ff20:B2"), std::string::npos) << outcome.error().message;
 }
@@ -225,7 +233,7 @@ TEST_F(CalibrateSession, WhatItWasMadeFromHasOneIdentity) {
   auto fewer = samples;
   fewer.pop_back();
   const auto of = [&](const std::vector<PoseSample>& s) {
-    return calibrate_session({.procedure = "pivot", .session = recorded(s)}, {})->report.session;
+    return calibrated(pivot_calibrator({}), recorded(s))->report.session;
   };
   EXPECT_EQ(of(samples), of(samples));
   EXPECT_NE(of(samples), of(fewer));

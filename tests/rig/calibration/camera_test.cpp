@@ -1,5 +1,5 @@
 // Recorded pictures of boards, through import and session to a camera.
-#include "rig/calibrate_camera.h"
+#include "rig/calibration/camera.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rig/calibration/calibrate_session.h"
 #include "rig/import_session.h"
 #include "tests/fakes/recordings.h"
 
@@ -28,6 +29,12 @@ Session imported(const std::filesystem::path& pictures) {
   return session ? std::move(*session) : Session{};
 }
 
+Result<CalibrationOutcome> calibrated(const Session& session, const CameraWish& wish) {
+  const auto calibrator = camera_calibrator(wish);
+  if (!calibrator) return tl::unexpected(calibrator.error());
+  return calibrate_session(**calibrator, session);
+}
+
 std::vector<double> numbers(const Fields& fields, std::string_view key) {
   return numbers_in(fields, key).value_or(std::vector<double>{});
 }
@@ -36,7 +43,7 @@ std::vector<double> numbers(const Fields& fields, std::string_view key) {
 // 532.75, 342.49, 233.75.
 TEST(CalibrateCamera, RecordedChessboards) {
   REQUIRE_RECORDING("camera/opencv_left");
-  const auto found = calibrate_camera(imported(recordings() / "camera/opencv_left"), "", Board{}, {});
+  const auto found = calibrated(imported(recordings() / "camera/opencv_left"), {});
   ASSERT_TRUE(found) << found.error().message;
   const CalibrationReport& report = found->report;
   ASSERT_TRUE(report.accepted) << report.reason;
@@ -59,7 +66,7 @@ TEST(CalibrateCamera, RecordedChessboards) {
 TEST(CalibrateCamera, RecordedCharucoFrames) {
   REQUIRE_RECORDING("camera/ucl_charuco_R");
   const Board board{BoardKind::charuco, 19, 26, 0.005, 0.004, "DICT_4X4_250"};
-  const auto found = calibrate_camera(imported(recordings() / "camera/ucl_charuco_R"), "", board, {});
+  const auto found = calibrated(imported(recordings() / "camera/ucl_charuco_R"), {.board = board});
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found->report.accepted) << found->report.reason;
   std::printf("figure: camera from recorded ChArUco frames: rms %.3f px\n", found->report.rms);
@@ -67,16 +74,27 @@ TEST(CalibrateCamera, RecordedCharucoFrames) {
 }
 
 TEST(CalibrateCamera, ASessionWithoutPicturesIsNamed) {
-  EXPECT_EQ(calibrate_camera({}, "", Board{}, {}).error().fault, Fault::not_found);
+  EXPECT_EQ(calibrated({}, {}).error().fault, Fault::not_found);
   Session session;
-  for (const char* name : {"left", "right"})
-    session.devices.push_back(
-        {static_cast<DeviceNumber>(session.devices.size()) + 1, {.name = name, .kind = DeviceKind::camera}});
-  EXPECT_EQ(calibrate_camera(session, "", Board{}, {}).error().fault, Fault::usage);
-  const auto none = calibrate_camera(session, "right", Board{}, {});
-  ASSERT_TRUE(none);
-  EXPECT_FALSE(none->report.accepted);
-  EXPECT_FALSE(none->result);
+  for (const DeviceNumber number : {1, 2}) {
+    session.devices.push_back({number, {.name = number == 1 ? "left" : "right", .kind = DeviceKind::camera}});
+    session.samples.push_back({number, CameraFrame{}});
+  }
+  const auto both = calibrated(session, {});
+  ASSERT_FALSE(both);
+  EXPECT_NE(both.error().message.find("--tool (left, right)"), std::string::npos) << both.error().message;
+  const auto none = calibrated(session, {.camera = "middle"});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("left, right"), std::string::npos) << none.error().message;
+  const auto empty = calibrated(session, {.camera = "right"});
+  ASSERT_TRUE(empty);
+  EXPECT_FALSE(empty->report.accepted);
+  EXPECT_FALSE(empty->result);
+  EXPECT_EQ(empty->report.warnings.size(), 1U);
+}
+
+TEST(CalibrateCamera, ABoardThatCannotBeIsRefusedAtOnce) {
+  EXPECT_EQ(camera_calibrator({.board = {.columns = 0}}).error().fault, Fault::usage);
 }
 
 }  // namespace

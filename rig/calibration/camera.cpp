@@ -1,0 +1,118 @@
+#include "rig/calibration/camera.h"
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "capture/picture/grey_picture.h"
+#include "rig/calibration/stream_choice.h"
+#include "vision/camera_calibration.h"
+
+namespace fude {
+namespace {
+
+std::vector<double> list_of(const Eigen::Vector2d& pair) { return {pair.x(), pair.y()}; }
+
+Fields fields_of(const CameraCalibration& found) {
+  const CameraModel& camera = found.camera;
+  return {{"width_px", static_cast<double>(camera.width)},
+          {"height_px", static_cast<double>(camera.height)},
+          {"focal_px", list_of(camera.focal_px)},
+          {"centre_px", list_of(camera.centre_px)},
+          {"distortion", std::vector<double>(camera.distortion.begin(), camera.distortion.end())},
+          {"focal_deviation_px", list_of(found.focal_deviation_px)},
+          {"centre_deviation_px", list_of(found.centre_deviation_px)}};
+}
+
+CalibrationReport report_of(const CameraCalibration& found) {
+  CalibrationReport report;
+  report.procedure = "camera";
+  report.to_frame = "picture";
+  report.from_frame = "camera";
+  report.unit = "px";
+  summarise(report, found.residuals_px, 2);
+  if (!found.residuals_px.empty()) {
+    report.held_out_rms = found.held_out_rms_px;
+    constexpr double of_95 = 1.96;
+    const double focal = found.camera.focal_px.x();
+    const double deviation = found.focal_deviation_px.x();
+    report.ci95 = {focal - of_95 * deviation, focal + of_95 * deviation};
+  }
+  report.accepted = found.accepted;
+  report.reason = found.reason;
+  report.warnings = found.warnings;
+  std::vector<std::string> names, left_out;
+  std::vector<double> rms;
+  for (const FittedView& view : found.views) {
+    names.push_back(view.name);
+    rms.push_back(view.rms_px);
+    if (!view.used) left_out.push_back(view.name);
+  }
+  report.detail("views", names);
+  report.detail("view_rms_px", rms);
+  report.detail("views_left_out", left_out);
+  report.detail("pictures_without_board", found.boardless);
+  report.detail("views_alike", static_cast<double>(found.alike));
+  report.detail("coverage", found.coverage);
+  report.detail("coverage_map", found.coverage_map);
+  report.detail("largest_tilt_rad", found.tilt_rad);
+  return report;
+}
+
+class CameraCalibrator final : public Calibrator {
+ public:
+  CameraCalibrator(const std::string& camera, CameraProcedure procedure)
+      : camera_({.name = camera, .what = "camera", .kinds = is_kind<CameraFrame>}),
+        procedure_(std::move(procedure)) {}
+
+  void begin(DeviceNumber device, const DeviceDescription& description) override {
+    camera_.begin(device, description);
+  }
+
+  Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer* picture) override {
+    const auto mine = camera_.takes(device, sample);
+    if (!mine) return tl::unexpected(mine.error());
+    if (*mine) look(std::get<CameraFrame>(sample), picture);
+    return progress_;
+  }
+
+  Result<CalibrationOutcome> finish() override {
+    const auto camera = camera_.found();
+    if (!camera) return tl::unexpected(camera.error());
+    const CameraCalibration found = procedure_.finish();
+    CalibrationOutcome outcome{report_of(found), std::nullopt};
+    outcome.report.devices = {camera->device.id};
+    outcome.report.warnings.insert(outcome.report.warnings.end(), damaged_.begin(), damaged_.end());
+    if (found.accepted) outcome.result = fields_of(found);
+    return outcome;
+  }
+
+ private:
+  void look(const CameraFrame& frame, const Transfer* picture) {
+    const std::string name = "picture " + std::to_string(++count_);
+    const auto image = picture ? grey_picture(picture->payload, frame)
+                               : Result<GreyImage>(failure(Fault::not_found, "its bytes are not there"));
+    if (!image) {
+      damaged_.push_back(name + " is left out: " + image.error().message);
+      return;
+    }
+    const CameraProcedure::Progress progress = procedure_.add(*image, name);
+    progress_ = {progress.views, progress.covered, progress.missing};
+  }
+
+  StreamChoice camera_;
+  CameraProcedure procedure_;
+  Progress progress_;
+  std::size_t count_ = 0;
+  std::vector<std::string> damaged_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Calibrator>> camera_calibrator(const CameraWish& wish) {
+  auto procedure = CameraProcedure::begin(wish.board);
+  if (!procedure) return tl::unexpected(procedure.error());
+  return std::make_unique<CameraCalibrator>(wish.camera, std::move(*procedure));
+}
+
+}  // namespace fude

@@ -1,0 +1,21 @@
+// A camera, from a session of pictures of a board (vision/camera_calibration.h).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rig/calibration/calibrator.h"
+#include "vision/board.h"
+
+namespace fude {
+
+struct CameraWish {
+  std::string camera;  // the name of its device; empty: the only one
+  Board board;
+};
+
+// Pictures are named "picture 1", "picture 2" … in their order. Details of the report: each view with its
+// rms, what was left out, the coverage. Errors: usage for a board that cannot be.
+Result<std::unique_ptr<Calibrator>> camera_calibrator(const CameraWish& wish);
+
+}  // namespace fude
