@@ -203,6 +203,7 @@ TEST(Camera, PulledOutAndPutBackInMidStream) {
     for (; life < end; ++life) {
       const std::size_t begun = recording.size();
       ASSERT_EQ(recording.drain_until(source, begun + 4), begun + 4) << "life " << life;
+      wait_for_any_moment(life, std::chrono::milliseconds(100));
       driver("unbind");
       while (recording.last().kind != TransferKind::unplugged)
         ASSERT_TRUE(recording.drain_one(source)) << "life " << life;

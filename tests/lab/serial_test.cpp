@@ -79,6 +79,7 @@ TEST(Serial, PulledOutAndPutBackInMidStream) {
       }
     });
     recording.drain_until(source, begun + 5 + static_cast<std::size_t>(life % 7));
+    wait_for_any_moment(life, std::chrono::milliseconds(2));
     port.unplug();
     stream.join();
     while (recording.last().kind != TransferKind::unplugged)

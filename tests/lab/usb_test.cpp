@@ -253,6 +253,7 @@ TEST(Usb, PulledOutAndPutBackInMidStream) {
       }
     });
     recording.drain_until(source, begun + 10 + static_cast<std::size_t>(life % 7));
+    wait_for_any_moment(life, std::chrono::milliseconds(2));
     device.unplug();
     stream.join();
     while (recording.last().kind != TransferKind::unplugged)
