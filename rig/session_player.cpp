@@ -91,6 +91,14 @@ Result<std::unique_ptr<SessionPlayer>> SessionPlayer::open(Session session, cons
       part = stream->part;
     }
   }
+  const SessionSpan span = span_of(session);
+  // Times may be anything: nothing here may go round.
+  if (wish.from > Duration(0) &&
+      (span.first > Timestamp::max() - wish.from || span.first + wish.from > span.last))
+    return failure(Fault::usage, "the session ends " +
+                                     std::to_string(seconds(span.last.time_since_epoch()) -
+                                                    seconds(span.first.time_since_epoch())) +
+                                     " s after its beginning; give an earlier --from");
   std::unique_ptr<SessionPlayer> player(
       new SessionPlayer(std::move(session), wish, std::move(clock), std::move(make_input)));
   for (const RecordedDevice& recorded : player->session_.devices)
@@ -113,7 +121,7 @@ SessionPlayer::SessionPlayer(Session session, const PlayWish& wish, std::shared_
   time_.recorded = Timestamp::min();
   if (wish.from <= Duration(0)) return;
   const Timestamp first = span_of(session_).first;
-  time_.recorded = first > Timestamp::max() - wish.from ? Timestamp::max() : first + wish.from;
+  time_.recorded = first + wish.from;
 }
 
 SessionPlayer::~SessionPlayer() = default;

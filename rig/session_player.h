@@ -50,7 +50,8 @@ class SessionPlayer {
   using Heard = std::function<void(DeviceNumber, const Transfer&, std::span<const Sample>)>;
 
   // Makes the devices, which stand still until play(). `clock` is not used at a speed of 0. Errors: not_found
-  // where the session, or the stream of that name, has nothing to play.
+  // where the session, or the stream of that name, has nothing to play; usage where `from` lies behind its
+  // end.
   static Result<std::unique_ptr<SessionPlayer>> open(Session session, const PlayWish& wish,
                                                      std::shared_ptr<Clock> clock, MakeLiveInput make_input);
   ~SessionPlayer();

@@ -275,6 +275,18 @@ TEST(SessionPlayer, NothingToPlayIsSaid) {
             "the session has nothing to play: no bytes of a device, no poses and no positions");
 }
 
+TEST(SessionPlayer, ABeginningBehindTheEndIsRefused) {
+  Session session;
+  add_pen(session);
+  PlayWish late = wish();
+  late.from = milliseconds(7 * (frames - 1));
+  EXPECT_TRUE(SessionPlayer::open(session, late, std::make_shared<ManualClock>(), no_uinput));
+  late.from += milliseconds(1);
+  const auto opened = SessionPlayer::open(session, late, std::make_shared<ManualClock>(), no_uinput);
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().fault, Fault::usage);
+}
+
 TEST(SessionPlayer, WithoutUinputTheRestGoesOnAndOneLineSaysWhatMendsIt) {
   Session session;
   add_pen(session);
