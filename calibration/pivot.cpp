@@ -9,9 +9,10 @@ namespace fude {
 namespace {
 
 constexpr std::size_t fewest_poses = 8;
-constexpr std::size_t enough_poses = 50;
+constexpr std::size_t enough_poses = 150;
 constexpr double worst_condition = 40;  // a second plane of turning with 3° of standard deviation
 constexpr double poor_condition = 20;
+constexpr double good_condition = 10;  // what a person is asked for
 constexpr double worst_rms_mm = 5;
 constexpr double fair_rms_mm = 1;
 constexpr double least_mixed_up_mm = 2;
@@ -121,7 +122,7 @@ Progress PivotProcedure::progress() const {
   }
   const double sigma = (rotation_sum_ / double(turns_.size())).jacobiSvd().singularValues()(0);
   const double condition = std::sqrt((1 + sigma) / std::max(1e-12, 1 - sigma));
-  const double shape = std::min(1.0, poor_condition / condition);
+  const double shape = std::min(1.0, good_condition / condition);
   const double count = std::min(1.0, double(turns_.size()) / double(enough_poses));
   progress.covered = std::min(shape, count);
   if (shape < 1)

@@ -142,14 +142,18 @@ Progress SurfaceProcedure::add(const PoseSample& sample) {
     const Eigen::Vector3d tip = sample.tracker_from_tool * tip_m_;
     way_.push_back({sample.time.host, tip, screen_.seen() - 1});
     handle_side_ += sample.tracker_from_tool.translation - tip;
+    const RestingTip rest;
+    if ((tip - way_[rests_since_].point_m).norm() > 2 * rest.nearest_m) rests_since_ = way_.size() - 1;
     constexpr double far_m = 0.015;
     const auto near = [&](const Eigen::Vector3d& q) { return (tip - q).norm() < far_m; };
-    if (places_.size() < enough_places && std::none_of(places_.begin(), places_.end(), near))
+    if (sample.time.host - way_[rests_since_].time >= rest.shortest && places_.size() < enough_places &&
+        std::none_of(places_.begin(), places_.end(), near))
       places_.push_back(tip);
   }
   const double covered = std::min(1.0, double(places_.size()) / double(enough_places));
   return {way_.size(), screen_.frozen() ? 0 : covered,
-          covered < 1 ? "touch " + std::to_string(enough_places - places_.size()) + " more places" : ""};
+          covered < 1 ? "rest the tip on " + std::to_string(enough_places - places_.size()) + " more places"
+                      : ""};
 }
 
 Calibration<SurfaceCalibration> SurfaceProcedure::finish() const {

@@ -61,7 +61,9 @@ class SurfaceProcedure {
   bool corners_first_;
   PoseScreen screen_;
   std::vector<TipPoint> way_;
-  std::vector<Eigen::Vector3d> places_;  // far from one another, for the progress alone
+  // For the progress alone: places far from one another, and since when the tip has rested.
+  std::vector<Eigen::Vector3d> places_;
+  std::size_t rests_since_ = 0;
   Eigen::Vector3d handle_side_ = Eigen::Vector3d::Zero();
   std::string tool_;
 };

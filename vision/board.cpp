@@ -9,6 +9,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "vision/board_dictionary.h"
+
 namespace fude {
 namespace {
 
@@ -142,19 +144,26 @@ bool board_goes_on(const cv::Mat& picture, const CornerGrid& grid, const Board& 
 
 std::vector<cv::Point2f> charuco_corners(const cv::Mat& picture, const Board& board,
                                          std::vector<int>& numbers) {
-  const auto dictionary = cv::aruco::getPredefinedDictionary(find_dictionary(board.dictionary)->number);
-  const auto charuco =
-      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m),
-                                      static_cast<float>(board.marker_m), dictionary);
+  const auto charuco = charuco_board(board);
   std::vector<std::vector<cv::Point2f>> markers;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(picture, dictionary, markers, ids);
+  cv::aruco::detectMarkers(picture, charuco->dictionary, markers, ids);
   std::vector<cv::Point2f> corners;
   if (!ids.empty()) cv::aruco::interpolateCornersCharuco(markers, ids, picture, charuco, corners, numbers);
   return corners;
 }
 
 }  // namespace
+
+cv::Ptr<cv::aruco::CharucoBoard> charuco_board(const Board& board) {
+  return cv::aruco::CharucoBoard::create(
+      board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
+      cv::aruco::getPredefinedDictionary(find_dictionary(board.dictionary)->number));
+}
+
+int marker_modules(const Board& board) {
+  return cv::aruco::getPredefinedDictionary(find_dictionary(board.dictionary)->number)->markerSize + 2;
+}
 
 Result<void> check(const Board& board) {
   const int least = board.kind == BoardKind::chessboard ? 3 : 2;

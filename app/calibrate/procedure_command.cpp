@@ -131,7 +131,7 @@ Result<void> run(const Procedure& procedure, const Options& options) {
   const StoredCalibration calibration{*outcome->result, outcome->report};
   if (auto r = write_file(options.out, toml_of(calibration)); !r) return r;
   if (!options.json) print(outcome->report);
-  keep(calibration, options);
+  if (procedure.kept) keep(calibration, options);
   return {};
 }
 

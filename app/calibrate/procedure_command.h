@@ -24,6 +24,7 @@ struct Procedure {
   std::string finds;  // for --help
   std::function<Result<std::unique_ptr<Calibrator>>(KnownCalibrations)> make;
   std::function<bool()> needs_session = {};  // empty: always
+  bool kept = true;                          // what it finds is for later, and not of this moment
 };
 
 // A command of that name with SESSION, --cal, --out, --report, --json and --force; running it makes the

@@ -9,11 +9,13 @@ class App;
 namespace fude {
 
 void add_calibrate_camera(CLI::App& calibrate, int& status);
+void add_calibrate_check(CLI::App& calibrate, int& status);
 void add_calibrate_imu(CLI::App& calibrate, int& status);
 void add_calibrate_list(CLI::App& calibrate, int& status);
 void add_calibrate_pivot(CLI::App& calibrate, int& status);
 void add_calibrate_rollback(CLI::App& calibrate, int& status);
 void add_calibrate_surface(CLI::App& calibrate, int& status);
+void add_calibrate_target(CLI::App& calibrate, int& status);
 void add_calibrate_tracker(CLI::App& calibrate, int& status);
 
 }  // namespace fude

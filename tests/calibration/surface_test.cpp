@@ -251,5 +251,22 @@ TEST(SurfaceSurvives, NumbersThatAreNone) {
   EXPECT_LT(sheet.rms_against_truth_mm(found->value), 0.3);
 }
 
+TEST(Surface, ProgressCountsThePlacesWhereTheTipRested) {
+  const ScriptedSheet script;
+  const auto samples = script.samples(5);
+  SurfaceProcedure touched(script.tip_m), wiped(script.tip_m);
+  Progress half, whole, never;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    whole = touched.add(samples[i]);
+    if (i == samples.size() / 2) half = whole;
+    if (i % 29 >= 15) never = wiped.add(samples[i]);  // only in the air
+  }
+  EXPECT_NEAR(half.covered, 0.5, 0.05);
+  EXPECT_FALSE(half.missing.empty());
+  EXPECT_EQ(whole.covered, 1);
+  EXPECT_TRUE(whole.missing.empty());
+  EXPECT_EQ(never.covered, 0);
+}
+
 }  // namespace
 }  // namespace fude
