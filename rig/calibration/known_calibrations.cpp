@@ -18,7 +18,7 @@ struct Sought {
 
 // What speaks against it; empty where nothing does.
 std::string made_with_other(const CalibrationReport& report, const Sought& sought) {
-  const auto& [stream, reference] = sought;
+  const ChosenStream& stream = sought.stream;
   const auto& devices = report.devices;
   if (!anonymous(stream.device.id) && !devices.empty() &&
       std::ranges::none_of(devices, [&](const std::string& device) {
@@ -27,8 +27,8 @@ std::string made_with_other(const CalibrationReport& report, const Sought& sough
     return "with the device " + devices.front() + " and not with " + stream.device.id;
   if (!report.tool.empty() && !stream.part.empty() && report.tool != stream.part)
     return "of the tool " + report.tool + " and not of " + stream.part;
-  if (report.reference != reference)
-    return report.reference.empty() ? "without the reference " + reference
+  if (report.reference != sought.reference)
+    return report.reference.empty() ? "without the reference " + sought.reference
                                     : "with --reference " + report.reference;
   return {};
 }
@@ -37,6 +37,10 @@ bool just_of(const CalibrationReport& report, const Sought& sought) {
   return made_with_other(report, sought).empty() && !anonymous(sought.stream.device.id) &&
          (report.tool.empty() || report.tool == sought.stream.part) &&
          std::ranges::find(report.devices, sought.stream.device.id) != report.devices.end();
+}
+
+std::string named(const ChosenStream& tool) {
+  return (tool.part.empty() ? "" : "the tool " + tool.part + " of ") + tool.device.id;
 }
 
 }  // namespace
@@ -102,9 +106,9 @@ Result<Eigen::Vector3d> tip_of(std::string_view procedure, const std::optional<E
   if (*found)
     if (const auto pivot = pivot_from((*found)->result)) return pivot->tip_m;
   const std::string others = known.others("pivot");
-  return failure(Fault::usage, std::string(procedure) +
-                                   " needs the tip: give --cal PIVOT.toml or --tip-mm x,y,z" +
-                                   (others.empty() ? "" : " (" + others + ", which is not this one)"));
+  return failure(Fault::usage,
+                 std::string(procedure) + " needs the tip: give --cal PIVOT.toml or --tip-mm x,y,z" +
+                     (others.empty() ? "" : " (" + others + ", and not that of " + named(tool) + ")"));
 }
 
 }  // namespace fude
