@@ -36,7 +36,7 @@ class DistortionProcedure {
  public:
   Progress add(const MappedPlace& place);
 
-  // A polynomial spline through the volume, as smooth as cross-validation finds it. More than 200 places
+  // A polyharmonic spline through the volume, as smooth as cross-validation finds it. More than 200 places
   // become the means of cells. Held out: places of every fifth cell, by the field of the others. Refused:
   // fewer than 20 places or cells; all on one plane; a field that does not foretell a fifth of the error;
   // what it leaves above 5 mm. Details: the error before, the turns before and after, the outliers' number.

@@ -17,9 +17,10 @@ constexpr double most_radius_mm = 2;
 constexpr double moved_px = 1.5;        // of a picture's corners from where most pictures have them
 constexpr double outlier_factor = 4.5;  // as of a camera's views
 constexpr double outlier_least_px = 0.75;
-constexpr double most_outliers = 0.25;  // of the corners
-constexpr double other_way = 1.5;       // times larger residuals that the second of two poses must leave
-constexpr double small_share = 0.08;    // of the picture
+constexpr double most_outliers = 0.25;   // of the corners
+constexpr double other_way = 1.5;        // times larger residuals that the second of two poses must leave, if
+constexpr double other_turn_rad = 0.03;  // it is another one
+constexpr double small_share = 0.08;     // of the picture
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -151,6 +152,10 @@ Pose<Camera, BoardFrame> pose_of(const Fit& fit) {
   if (angle > 0) pose.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis / angle));
   pose.translation = {fit.place[0], fit.place[1], fit.place[2]};
   return pose;
+}
+
+bool differ(const Fit& a, const Fit& b) {
+  return pose_of(a).rotation.angularDistance(pose_of(b).rotation) > other_turn_rad;
 }
 
 // How the camera's centre, in the board's frame, moves with the six numbers of the fit.
@@ -328,7 +333,7 @@ CameraPlacement CameraPoseProcedure::finish() const {
           "the corners stand " + in_words(fit.rms_px) +
           " px from where the lens would see them; is it this camera's, at this focus, and is the board "
           "flat?");
-    if (both.size() > 1 && both[1].rms_px < other_way * fit.rms_px)
+    if (both.size() > 1 && both[1].rms_px < other_way * fit.rms_px && differ(fit, both[1]))
       return refused(
           "two ways of standing explain the picture alike; look more from the side, or lay down a larger "
           "board");

@@ -165,18 +165,24 @@ void add_tool_options(CLI::App& command, ToolWish& wish) {
 }
 
 // As one word: CLI11 would take what follows for more numbers.
-void add_tip_option(CLI::App& command, std::optional<Eigen::Vector3d>& tip_m) {
-  command.add_option_function<std::string>(
-      "--tip-mm",
-      [&tip_m](const std::string& text) {
-        Eigen::Vector3d mm;
+CLI::Option* add_numbers_option(CLI::App& command, const std::string& name, const std::string& meaning,
+                                std::function<void(const Eigen::Vector3d&)> take) {
+  return command.add_option_function<std::string>(
+      name,
+      [name, take = std::move(take)](const std::string& text) {
+        Eigen::Vector3d v;
         int length = 0;
-        if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &mm.x(), &mm.y(), &mm.z(), &length) != 3 ||
-            text[std::size_t(length)] != '\0' || !mm.allFinite())
-          throw CLI::ValidationError("--tip-mm", "give three numbers, as 0.5,-12,150");
-        tip_m = 1e-3 * mm;
+        if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v.x(), &v.y(), &v.z(), &length) != 3 ||
+            text[std::size_t(length)] != '\0' || !v.allFinite())
+          throw CLI::ValidationError(name, "give three numbers, as 0.5,-12,150");
+        take(v);
       },
-      "x,y,z of the tip in the tool's frame, instead of a pivot");
+      meaning);
+}
+
+void add_tip_option(CLI::App& command, std::optional<Eigen::Vector3d>& tip_m) {
+  add_numbers_option(command, "--tip-mm", "x,y,z of the tip in the tool's frame, instead of a pivot",
+                     [&tip_m](const Eigen::Vector3d& mm) { tip_m = 1e-3 * mm; });
 }
 
 }  // namespace fude

@@ -1,10 +1,12 @@
 #include "rig/calibration/camera.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "capture/picture/grey_picture.h"
+#include "rig/calibration/shown_pictures.h"
 #include "rig/calibration/stream_choice.h"
 #include "vision/camera_calibration.h"
 
@@ -72,7 +74,11 @@ class CameraCalibrator final : public Calibrator {
   Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer* picture) override {
     const auto mine = camera_.takes(device, sample);
     if (!mine) return tl::unexpected(mine.error());
-    if (*mine) look(std::get<CameraFrame>(sample), picture);
+    if (!*mine) return progress_;
+    if (const auto shown = pictures_.next(std::get<CameraFrame>(sample), picture)) {
+      const CameraProcedure::Progress progress = procedure_.add(shown->image, shown->name);
+      progress_ = {progress.views, progress.covered, progress.missing};
+    }
     return progress_;
   }
 
@@ -82,32 +88,43 @@ class CameraCalibrator final : public Calibrator {
     const CameraCalibration found = procedure_.finish();
     CalibrationOutcome outcome{report_of(found), std::nullopt};
     outcome.report.devices = {camera->device.id};
-    outcome.report.warnings.insert(outcome.report.warnings.end(), damaged_.begin(), damaged_.end());
+    const auto& damaged = pictures_.damaged();
+    outcome.report.warnings.insert(outcome.report.warnings.end(), damaged.begin(), damaged.end());
     if (found.accepted) outcome.result = fields_of(found);
     return outcome;
   }
 
  private:
-  void look(const CameraFrame& frame, const Transfer* picture) {
-    const std::string name = "picture " + std::to_string(++count_);
-    const auto image = picture ? grey_picture(picture->payload, frame)
-                               : Result<GreyImage>(failure(Fault::not_found, "its bytes are not there"));
-    if (!image) {
-      damaged_.push_back(name + " is left out: " + image.error().message);
-      return;
-    }
-    const CameraProcedure::Progress progress = procedure_.add(*image, name);
-    progress_ = {progress.views, progress.covered, progress.missing};
-  }
-
   StreamChoice camera_;
   CameraProcedure procedure_;
   Progress progress_;
-  std::size_t count_ = 0;
-  std::vector<std::string> damaged_;
+  ShownPictures pictures_;
 };
 
 }  // namespace
+
+std::optional<CameraModel> camera_from(const Fields& fields) {
+  const auto list = [&](std::string_view key, std::size_t count) {
+    auto numbers = numbers_in(fields, key).value_or(std::vector<double>{});
+    const bool whole =
+        numbers.size() == count && std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); });
+    return whole ? std::optional(std::move(numbers)) : std::nullopt;
+  };
+  const auto width = list("width_px", 1), height = list("height_px", 1), focal = list("focal_px", 2),
+             centre = list("centre_px", 2), distortion = list("distortion", 5);
+  constexpr double largest_px = 1e5;
+  if (!width || !height || !focal || !centre || !distortion || !(width->front() > 0) ||
+      !(height->front() > 0) || !(width->front() < largest_px) || !(height->front() < largest_px) ||
+      !((*focal)[0] > 0) || !((*focal)[1] > 0))
+    return std::nullopt;
+  CameraModel camera;
+  camera.width = static_cast<std::int32_t>(width->front());
+  camera.height = static_cast<std::int32_t>(height->front());
+  camera.focal_px = {(*focal)[0], (*focal)[1]};
+  camera.centre_px = {(*centre)[0], (*centre)[1]};
+  std::ranges::copy(*distortion, camera.distortion.begin());
+  return camera;
+}
 
 Result<std::unique_ptr<Calibrator>> camera_calibrator(const CameraWish& wish) {
   auto procedure = CameraProcedure::begin(wish.board);

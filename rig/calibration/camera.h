@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "rig/calibration/calibrator.h"
+#include "signal/camera_model.h"
 #include "vision/board.h"
 
 namespace fude {
@@ -17,5 +19,8 @@ struct CameraWish {
 // Pictures are named "picture 1", "picture 2" … in their order. Details of the report: each view with its
 // rms, what was left out, the coverage. Errors: usage for a board that cannot be.
 Result<std::unique_ptr<Calibrator>> camera_calibrator(const CameraWish& wish);
+
+// The lens among the fields of its result; none where it is not whole.
+std::optional<CameraModel> camera_from(const Fields& fields);
 
 }  // namespace fude

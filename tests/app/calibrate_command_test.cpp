@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "capture/session_writer.h"
 #include "tests/fakes/scripted_tracker.h"
@@ -75,6 +77,15 @@ TEST_F(CalibrateCommand, ARefusalLeavesAReportAndNoCalibration) {
   EXPECT_FALSE(there("data"));
   EXPECT_EQ(fude("calibrate pivot absent.fude --report absent.json"), 1);
   EXPECT_FALSE(json("absent.json")["accepted"]);
+}
+
+TEST_F(CalibrateCommand, EveryProcedureIsThere) {
+  std::vector<std::string> names{"pivot",      "surface", "tracker", "common-motion",
+                                 "distortion", "imu",     "imu-axes"};
+#ifdef FUDE_VISION
+  names.insert(names.end(), {"camera", "camera-pose"});
+#endif
+  for (const std::string& name : names) EXPECT_EQ(fude("calibrate " + name + " --help"), 0) << name;
 }
 
 TEST_F(CalibrateCommand, WrongUsageIsTwo) {

@@ -63,6 +63,16 @@ TEST(CalibrateCamera, RecordedChessboards) {
   EXPECT_NEAR(centre[1], 233.75, 4);
 }
 
+// The recorded boards have 9 x 6 inner corners; OpenCV finds 7 x 6 of them.
+TEST(CalibrateCamera, ABoardLargerThanNamedIsAWarning) {
+  REQUIRE_RECORDING("camera/opencv_left");
+  const auto found = calibrated(imported(recordings() / "camera/opencv_left"), {.board = {.columns = 7}});
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_FALSE(found->report.warnings.empty());
+  EXPECT_NE(found->report.warnings[0].find("goes on beyond the 7 x 6"), std::string::npos)
+      << found->report.warnings[0];
+}
+
 TEST(CalibrateCamera, RecordedCharucoFrames) {
   REQUIRE_RECORDING("camera/ucl_charuco_R");
   const Board board{BoardKind::charuco, 19, 26, 0.005, 0.004, "DICT_4X4_250"};
