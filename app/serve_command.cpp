@@ -20,14 +20,17 @@ struct Options {
   std::vector<std::string> named;
   bool fuse = false;
   std::vector<double> up{0, 0, 1};
+  double predict_ms = 0;
   double seconds = 0;  // 0: until Ctrl-C
 };
 
 int serve(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
-  PoseRelay::Wish wish{.doors = options.doors, .named = {}, .fused_with_up = std::nullopt};
+  PoseRelay::Wish wish{.doors = options.doors, .named = {}, .fused_with_up = std::nullopt, .fused_ahead = {}};
   if (options.fuse) {
     wish.fused_with_up = Eigen::Vector3d(options.up.data());
+    wish.fused_ahead =
+        std::chrono::round<Duration>(std::chrono::duration<double, std::milli>(options.predict_ms));
     if (!(wish.fused_with_up->norm() > 0)) return report({Fault::usage, "--up needs a direction, as 0,0,1"});
   }
   for (const std::string& name : options.named) {
@@ -73,6 +76,10 @@ void add_serve(CLI::App& app, int& status) {
   command->add_option("--up", options->up, "x,y,z of up in the tracker's frame, for --fuse")
       ->delimiter(',')
       ->expected(3);
+  command
+      ->add_option("--predict-ms", options->predict_ms,
+                   "the fused tool so much ahead of its time, as it moves now: for a display, not to be kept")
+      ->check(CLI::Range(0.0, 1e3 * seconds(Fusion::longest_prediction)));
   command->add_option("--listen", options->doors.address,
                       "the address that others reach: 0.0.0.0 for every network of this machine");
   command->add_option("--openigtlink-port", options->doors.openigtlink, "0: a free one");

@@ -27,7 +27,7 @@ Result<std::unique_ptr<PoseRelay>> PoseRelay::open(Wish wish, std::function<void
   };
   listener.refused = [warn](const Error& error) { warn(error.message); };
   DevicesWish devices;
-  if (wish.fused_with_up) relay->fusion_.emplace(*wish.fused_with_up);
+  if (wish.fused_with_up) relay->fusion_.emplace(*wish.fused_with_up, wish.fused_ahead);
   devices.wanted = [fused = wish.fused_with_up.has_value()](const AttachedDevice& device) {
     const DeviceKind kind = device.description.kind;
     return kind == DeviceKind::tracker || (fused && kind == DeviceKind::imu);

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "rig/devices.h"
-#include "rig/live_fusion.h"
+#include "rig/fusion/live_fusion.h"
 #include "rig/pose_servers.h"
 #include "signal/result.h"
 
@@ -29,6 +29,7 @@ class PoseRelay {
     // Where given: what the rig's first tool does is fused with its first inertial unit and served as "fused"
     // too. Up, in the tracker's frame.
     std::optional<Eigen::Vector3d> fused_with_up;
+    Duration fused_ahead{};  // it is served so much ahead of its time, predicted: for a display
   };
   struct Relayed {
     std::string name;         // under which it is served

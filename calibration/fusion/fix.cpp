@@ -7,12 +7,28 @@ namespace {
 
 using Rows3 = Eigen::Matrix<double, 3, error::size>;
 
-// How a point fixed to the sensor moves with the state's error.
+// How a point of the sensor's body moves with the state's error.
 Rows3 point_jacobian(const MotionState& state, const Eigen::Vector3d& offset) {
   Rows3 j = Rows3::Zero();
   j.middleCols<3>(error::position).setIdentity();
-  j.middleCols<3>(error::turn) = -cross_matrix(state.world_from_sensor * offset);
+  j.middleCols<3>(error::turn) = -cross_matrix(state.world_from_sensor * (state.lever_m + offset));
+  j.middleCols<3>(error::lever) = state.world_from_sensor.toRotationMatrix();
   return j;
+}
+
+Eigen::Vector3d point_of(const MotionState& state, const Eigen::Vector3d& offset) {
+  return state.tracked_point_m() + state.world_from_sensor * offset;
+}
+
+// Height of the surface under a place, and its slope along x and y.
+struct Height {
+  double m = 0, slope_x = 0, slope_y = 0;
+};
+Height height_at(const ContactFix& fix, const Eigen::Vector3d& place_m) {
+  if (!fix.sheet) return {.m = fix.height_m};
+  const Eigen::RowVector2d at_mm = 1e3 * place_m.head<2>().transpose();
+  const Eigen::MatrixXd slope = fix.sheet->slope(at_mm);
+  return {.m = fix.height_m + 1e-3 * fix.sheet->at(at_mm)(0), .slope_x = slope(0, 0), .slope_y = slope(1, 0)};
 }
 
 // Of the tracked point: its place in the sensor's frame and the tracker's lag are being found too.
@@ -20,8 +36,7 @@ void tracked_point(const MotionState& state, const Eigen::Vector3d& rate, double
                    const Eigen::Vector3d& seen, Innovation& out) {
   const Eigen::Vector3d velocity = state.velocity_mps + state.world_from_sensor * rate.cross(state.lever_m);
   out.residual.head<3>() = seen - (state.tracked_point_m() - velocity * (state.lag_s - assumed_lag_s));
-  out.jacobian.topRows<3>() = point_jacobian(state, state.lever_m);
-  out.jacobian.block<3, 3>(0, error::lever) = state.world_from_sensor.toRotationMatrix();
+  out.jacobian.topRows<3>() = point_jacobian(state, Eigen::Vector3d::Zero());
   out.jacobian.block<3, 1>(0, error::lag) = -velocity;
 }
 
@@ -41,10 +56,9 @@ struct Linearise {
   Innovation operator()(const PointFix& fix) const {
     Innovation out;
     out.rows = 3;
-    if (fix.sensor_offset_m) {
-      out.residual.head<3>() =
-          fix.point_m - (state.position_m + state.world_from_sensor * *fix.sensor_offset_m);
-      out.jacobian.topRows<3>() = point_jacobian(state, *fix.sensor_offset_m);
+    if (fix.offset_m) {
+      out.residual.head<3>() = fix.point_m - point_of(state, *fix.offset_m);
+      out.jacobian.topRows<3>() = point_jacobian(state, *fix.offset_m);
     } else {
       tracked_point(state, rate, assumed_lag_s, fix.point_m, out);
     }
@@ -67,8 +81,7 @@ struct Linearise {
 
   Innovation operator()(const RangeFix& fix) const {
     Innovation out;
-    const Eigen::Vector3d path =
-        state.position_m + state.world_from_sensor * fix.emitter_offset_m - fix.receiver_m;
+    const Eigen::Vector3d path = point_of(state, fix.emitter_offset_m) - fix.receiver_m;
     const double distance = path.norm();
     if (distance < 1e-6) return out;
     const Eigen::Vector3d direction = path / distance;
@@ -85,9 +98,10 @@ struct Linearise {
 
   Innovation operator()(const ContactFix& fix) const {
     Innovation out;
-    const Eigen::Vector3d tip = state.position_m + state.world_from_sensor * fix.tip_offset_m;
-    one_row(out, Eigen::Vector3d::UnitZ(), point_jacobian(state, fix.tip_offset_m), fix.height_m - tip.z(),
-            fix.sigma_m);
+    const Eigen::Vector3d tip = point_of(state, fix.tip_offset_m);
+    const Height surface = height_at(fix, tip);
+    one_row(out, {-surface.slope_x, -surface.slope_y, 1}, point_jacobian(state, fix.tip_offset_m),
+            surface.m - tip.z(), fix.sigma_m);
     return out;
   }
 
@@ -127,7 +141,7 @@ bool positive(double sigma) { return std::isfinite(sigma) && sigma > 0; }
 struct Sound {
   bool operator()(const PointFix& fix) const {
     return fix.point_m.allFinite() && positive(fix.covariance_m2) &&
-           (!fix.sensor_offset_m || fix.sensor_offset_m->allFinite());
+           (!fix.offset_m || fix.offset_m->allFinite());
   }
   bool operator()(const PoseFix& fix) const {
     return fix.point_m.allFinite() && fix.world_from_sensor.coeffs().allFinite() &&

@@ -1,21 +1,24 @@
-// What a sensor says of the pose at one moment: the measurements that correct the fusion.
+// What a sensor says of the pose at one moment: the measurements that correct the fusion. Offsets are from
+// the tracked point, along the sensor's axes.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 
 #include "calibration/fusion/motion_state.h"
+#include "calibration/smooth_field.h"
 
 namespace fude {
 
-// Where the tracked point (MotionState::lever_m) is, or a known point of the sensor's frame.
+// Where the tracked point (MotionState::lever_m) is, or one beside it.
 struct PointFix {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // world
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Identity() * 1e-6;
-  std::optional<Eigen::Vector3d> sensor_offset_m;  // none: the tracked point
+  std::optional<Eigen::Vector3d> offset_m;  // none: a tracker's, which may lag
 };
 
 // A point fix of the tracked point and the sensor's rotation.
@@ -27,16 +30,17 @@ struct PoseFix {
 
 // One ultrasonic distance from a receiver at a known place to an emitter on the sensor's body.
 struct RangeFix {
-  Eigen::Vector3d receiver_m = Eigen::Vector3d::Zero();        // world
-  Eigen::Vector3d emitter_offset_m = Eigen::Vector3d::Zero();  // sensor
+  Eigen::Vector3d receiver_m = Eigen::Vector3d::Zero();  // world
+  Eigen::Vector3d emitter_offset_m = Eigen::Vector3d::Zero();
   double distance_m = 0;
   double sigma_m = 5e-4;
 };
 
-// The tip touches the surface z = height_m of the world.
+// The tip touches the surface z = height_m of the world, or a sheet over it.
 struct ContactFix {
-  Eigen::Vector3d tip_offset_m = Eigen::Vector3d::Zero();  // sensor
+  Eigen::Vector3d tip_offset_m = Eigen::Vector3d::Zero();
   double height_m = 0;
+  std::shared_ptr<const SmoothField> sheet;  // more height, mm, at the world's x and y in mm
   double sigma_m = 3e-4;
 };
 

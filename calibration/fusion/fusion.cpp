@@ -10,9 +10,11 @@ constexpr Duration snapshot_period = std::chrono::milliseconds(5);
 constexpr int too_late_to_rejoin = 5, too_late_to_restart = 25;
 constexpr Duration smallest_step_back = std::chrono::milliseconds(50);  // less is disorder
 
-// Of a correction so much is shown at once; the rest flows in at this speed, faster where there is much of
-// it.
-constexpr double shown_at_once_m = 2e-4, flow_speed_mps = 0.06, flow_time_s = 0.025;
+// A correction flows in at this speed, faster where there is much of it, but of what may stand between two
+// sources no more with one sample than nobody sees.
+constexpr double flow_speed_mps = 0.06, flow_time_s = 0.025;
+constexpr double between_sources_m = 4e-3, unseen_m = 2e-4;
+constexpr double dense_s = 0.01;         // rows further apart are steps anyway
 constexpr double longest_flow_m = 0.02;  // more than that is no correction but another place
 
 }  // namespace
@@ -58,6 +60,12 @@ void Fusion::restart() {
   forgotten_ = 0;
   withheld_m_.setZero();
   now_.begin_again();
+}
+
+bool Fusion::leaps(Timestamp time) {
+  if (!now_.started() || leap_watch_.believes(now_.time(), time)) return false;
+  ++lateness_.leaps;
+  return true;
 }
 
 FixResult Fusion::take(const Event& event, bool& fresh) {
@@ -117,19 +125,18 @@ void Fusion::forget_old() {
 
 // What is still withheld shrinks with time; what has just been corrected joins it.
 void Fusion::flow(Timestamp before, const Eigen::Vector3d& correction) {
-  const auto show = [this](double length_m) {
-    const double size = withheld_m_.norm();
-    withheld_m_ *= size > length_m ? 1 - length_m / size : 0;
-  };
-  const double step_s = seconds(now_.time() - before);
-  if (step_s > 0) show(step_s * std::max(flow_speed_mps, withheld_m_.norm() / flow_time_s));
-  if (correction.isZero(0)) return;
+  const double step_s = seconds(now_.time() - before), size = withheld_m_.norm();
+  if (step_s > 0 && size > 0) {
+    double shown = step_s * std::max(flow_speed_mps, size / flow_time_s);
+    if (step_s <= dense_s) shown = std::min(shown, std::max(unseen_m, size - between_sources_m));
+    withheld_m_ *= std::max(0.0, 1 - shown / size);
+  }
   withheld_m_ -= correction;
-  show(shown_at_once_m);
   if (withheld_m_.norm() > longest_flow_m) withheld_m_.setZero();
 }
 
 bool Fusion::add(const InertialReading& reading, Timestamp stamped) {
+  if (leaps(stamped)) return false;
   const std::optional<Timestamp> placed = on_one_clock(sources_[0], stamped);
   if (!placed) return false;
   const Timestamp time = *placed;
@@ -146,6 +153,7 @@ FixResult Fusion::add(const Fix& fix, Timestamp stamped) {
   const bool tracked = std::holds_alternative<PoseFix>(fix) || std::holds_alternative<PointFix>(fix);
   const double lag_s = tracked ? now_.motion().lag_s : 0;
   const auto lag = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(lag_s));
+  if (leaps(stamped)) return {FixOutcome::too_late};
   const std::optional<Timestamp> placed = on_one_clock(sources_[1 + fix.index()], stamped - lag);
   if (!placed) return {FixOutcome::too_late};
   const Timestamp time = *placed;
@@ -162,17 +170,23 @@ FixResult Fusion::add(const Fix& fix, Timestamp stamped) {
   return result;
 }
 
-FusedPose Fusion::pose() const {
-  const MotionState& motion = now_.motion();
-  FusedPose pose;
-  pose.time = now_.time();
-  pose.state = now_.state();
-  pose.placed = now_.placed();
-  pose.rate_radps = now_.rate_radps();
-  pose.velocity_mps = motion.velocity_mps + motion.world_from_sensor * pose.rate_radps.cross(motion.lever_m);
-  pose.point_m = motion.tracked_point_m() - inertial_delay(motion.lag_s) * pose.velocity_mps + withheld_m_;
-  pose.world_from_sensor = motion.world_from_sensor;
-  pose.covariance = motion.pose_covariance();
+FusedPose Fusion::pose() const { return shown(now_); }
+
+FusedPose Fusion::predicted(Timestamp at) const {
+  MotionFilter ahead = now_;
+  ahead.move_to(std::min(at, now_.time() + longest_prediction));
+  FusedPose pose = shown(ahead);
+  if (pose.state == FusionState::ok) pose.state = FusionState::predicted;
+  return pose;
+}
+
+FusedPose Fusion::shown(const MotionFilter& filter) const {
+  FusedPose pose = pose_of(filter.motion(), filter.rate_radps());
+  pose.time = filter.time();
+  pose.state = filter.state();
+  pose.placed = filter.placed();
+  pose.point_m += withheld_m_;
+  pose.covariance.topLeftCorner<3, 3>() += withheld_m_ * withheld_m_.transpose();
   return pose;
 }
 

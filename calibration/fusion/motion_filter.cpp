@@ -8,6 +8,7 @@ namespace {
 
 constexpr double free_heading_rad = std::numbers::pi;
 constexpr int outliers_to_regain = 3;
+constexpr double unknown_turn_rad2 = 1;  // of a variance: no linear filter finds back from there
 
 // Chi-square with n degrees of freedom at the probability of a normal deviate within ±z: Wilson and Hilferty.
 double chi_square(int n, double z) {
@@ -35,6 +36,7 @@ MotionFilter::MotionFilter(const FusionSettings& settings)
   prior(error::accel, 3, settings.start_accel_mps2);
   prior(error::lever, 3, settings.lever_sigma_m);
   prior(error::lag, 1, settings.lag_sigma_s);
+  prior(error::gyro_lag, 1, settings.gyro_lag_sigma_s);
   motion_.position_m = settings.start_position_m;
 }
 
@@ -71,7 +73,7 @@ void MotionFilter::move_to(Timestamp time, ErrorMatrix* transition) {
 }
 
 bool MotionFilter::take(const InertialReading& reading, Timestamp time, ErrorMatrix* transition) {
-  if (!reading.turn_rate_radps.allFinite() || !reading.specific_force_mps2.allFinite()) {
+  if (!plausible(reading)) {
     ++counts_.unsound;
     return false;
   }
@@ -81,9 +83,13 @@ bool MotionFilter::take(const InertialReading& reading, Timestamp time, ErrorMat
   }
   if (!started_) start(time);
   const double since = has_input_ ? seconds(time - input_time_) : settings_.orientation.longest_step_s / 100;
-  const InertialInput now{reading.turn_rate_radps, reading.specific_force_mps2};
+  InertialInput now{reading.turn_rate_radps, reading.specific_force_mps2};
+  if (has_input_) now.rate_change_radps = now.turn_rate_radps - input_.turn_rate_radps;
   if (has_input_ && since > settings_.coast_s) ++counts_.coasted;
   step(time, now, transition);  // a reading is the mean since the one before
+  if (since > settings_.orientation.longest_step_s &&
+      motion_.covariance.diagonal().segment<3>(error::turn).maxCoeff() > unknown_turn_rad2)
+    levelled_ = false;
   InertialReading seen = reading;
   if (!settings_.use_field) seen.magnetic_field_ut.reset();
   orientation_.add(seen, since);
@@ -97,6 +103,7 @@ bool MotionFilter::take(const InertialReading& reading, Timestamp time, ErrorMat
     attitude_time_ = time;
   }
   input_ = now;
+  input_.rate_change_radps.setZero();  // has been taken
   input_time_ = time;
   has_input_ = true;
   ++counts_.inertial;
@@ -108,7 +115,9 @@ std::optional<AttitudeFix> MotionFilter::attitude_due() {
     return std::nullopt;
   attitude_time_ = input_time_;
   AttitudeFix fix;
-  fix.world_from_sensor = settings_.world_from_earth * orientation_.earth_from_sensor();
+  // That filter is of the gyroscope's time.
+  fix.world_from_sensor = settings_.world_from_earth * orientation_.earth_from_sensor() *
+                          rotation_of(motion_.gyro_lag_s * rate_radps());
   fix.up = settings_.world_from_earth * Eigen::Vector3d::UnitZ();
   if (settings_.use_gravity) fix.inclination_sigma_rad = settings_.gravity_sigma_rad;
   if (settings_.use_field && orientation_.has_heading()) {
@@ -136,11 +145,11 @@ void MotionFilter::anchor(const Fix& fix) {
     motion_.position_m = pose->point_m - motion_.world_from_sensor * motion_.lever_m;
   } else if (const auto* point = std::get_if<PointFix>(&fix)) {
     motion_.position_m =
-        point->point_m - motion_.world_from_sensor * point->sensor_offset_m.value_or(motion_.lever_m);
+        point->point_m -
+        motion_.world_from_sensor * (motion_.lever_m + point->offset_m.value_or(Eigen::Vector3d::Zero()));
   }
   forget(error::position, settings_.start_position_sigma_m);
   forget(error::velocity, settings_.start_velocity_mps);
-  motion_.velocity_mps.setZero();
 }
 
 FixResult MotionFilter::take(const Fix& fix, Timestamp time, double assumed_lag_s) {
@@ -154,6 +163,7 @@ FixResult MotionFilter::take(const Fix& fix, Timestamp time, double assumed_lag_
 
   bool anchored = false;
   if (!placed_ || state() == FusionState::lost) {
+    motion_.velocity_mps.setZero();
     anchor(fix);
     anchored = true;
   }
@@ -168,7 +178,8 @@ FixResult MotionFilter::take(const Fix& fix, Timestamp time, double assumed_lag_
       ++counts_.outliers;
       return result;
     }
-    anchor(fix);
+    ++counts_.changed_mind;
+    anchor(fix);  // the place is another one, the hand goes on as it went
     anchored = true;
     result = correct(innovation_of(fix, motion_, rate_radps(), assumed_lag_s), true);
   }
@@ -221,7 +232,7 @@ FixResult MotionFilter::correct(const Innovation& innovation, bool soft) {
 }
 
 FusionState MotionFilter::state() const {
-  if (!placed_) return FusionState::lost;
+  if (!placed_ || !motion_.position_m.allFinite()) return FusionState::lost;
   const double silence = seconds(time_ - fix_time_);
   const double variance = motion_.covariance.diagonal().segment<3>(error::position).maxCoeff();
   if (silence > settings_.lost_s) return FusionState::lost;

@@ -31,6 +31,7 @@ struct FusionSettings {
   double lever_sigma_m = 0;                           // 0: known exactly
   double lag_s = 0;
   double lag_sigma_s = 0;
+  double gyro_lag_sigma_s = 0;  // of the gyroscope behind the accelerometer
 
   // How far gravity and field are trusted, one fix each attitude_s; their errors last for seconds, hence so
   // little.
@@ -66,6 +67,7 @@ struct FixResult {
 // What was done with everything that came.
 struct FusionCounts {
   std::uint64_t inertial = 0, used = 0, anchored = 0, outliers = 0, unsound = 0;
+  std::uint64_t changed_mind = 0;     // outliers that lasted and became the truth: a tracker that flips
   std::uint64_t repeated = 0;         // inertial samples whose time is no later than the one before
   std::uint64_t disturbed_field = 0;  // attitude fixes without a heading, since the field was disturbed
   std::uint64_t coasted = 0;          // silences of the inertial unit

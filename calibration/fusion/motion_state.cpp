@@ -7,16 +7,14 @@ namespace fude {
 namespace {
 
 constexpr double scale_correlation_s = 0.1;
-
-// Where tracker and inertial unit differ by less than this, it is the delay of the inertial unit's own
-// filters; twice as much is the tracker's delay.
-constexpr double inertial_delay_s = 0.003;
+constexpr double most_rate_change_radps = 20;  // from one reading to the next
 
 // The blocks of a step's transition that are not the identity.
 struct Step {
   double s = 0;
   Eigen::Matrix3d velocity_turn = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();  // times −s: velocity by accel, turn by gyro
+  Eigen::Vector3d turn_gyro_lag = Eigen::Vector3d::Zero(), velocity_gyro_lag = Eigen::Vector3d::Zero();
   bool inertial = false;
 };
 
@@ -26,8 +24,10 @@ void multiply_left(const Step& step, Matrix&& m) {
   m.template middleRows<3>(error::position) += step.s * m.template middleRows<3>(error::velocity);
   if (!step.inertial) return;
   m.template middleRows<3>(error::velocity) += step.velocity_turn * m.template middleRows<3>(error::turn) -
-                                               step.rotation * m.template middleRows<3>(error::accel);
+                                               step.rotation * m.template middleRows<3>(error::accel) +
+                                               step.velocity_gyro_lag * m.row(error::gyro_lag);
   m.template middleRows<3>(error::turn) -= step.rotation * m.template middleRows<3>(error::gyro);
+  m.template middleRows<3>(error::turn) += step.turn_gyro_lag * m.row(error::gyro_lag);
 }
 
 void carry(ErrorMatrix& covariance, const Step& step, ErrorMatrix* transition) {
@@ -63,26 +63,6 @@ Eigen::Vector3d turn_of(const Eigen::Quaterniond& rotation) {
   return rotation.vec() * (sign * (sine < 1e-9 ? 2 : angle / sine));
 }
 
-double inertial_delay(double lag_s) {
-  const double size = std::abs(lag_s);
-  return std::copysign(std::min(size, std::max(0.0, 2 * inertial_delay_s - size)), lag_s);
-}
-
-Eigen::Matrix<double, 6, 6> MotionState::pose_covariance() const {
-  using Jacobian = Eigen::Matrix<double, 3, error::size>;
-  Jacobian point = Jacobian::Zero();
-  point.middleCols<3>(error::position).setIdentity();
-  point.middleCols<3>(error::turn) = -cross_matrix(world_from_sensor * lever_m);
-  point.middleCols<3>(error::lever) = world_from_sensor.toRotationMatrix();
-  const Eigen::Matrix<double, error::size, 3> crossed = covariance * point.transpose();
-  Eigen::Matrix<double, 6, 6> pose;
-  pose.topLeftCorner<3, 3>() = point * crossed;
-  pose.bottomLeftCorner<3, 3>() = crossed.middleRows<3>(error::turn);
-  pose.topRightCorner<3, 3>() = pose.bottomLeftCorner<3, 3>().transpose();
-  pose.bottomRightCorner<3, 3>() = covariance.block<3, 3>(error::turn, error::turn);
-  return pose;
-}
-
 void MotionState::add(const ErrorVector& e) {
   position_m += e.segment<3>(error::position);
   velocity_mps += e.segment<3>(error::velocity);
@@ -91,6 +71,7 @@ void MotionState::add(const ErrorVector& e) {
   accel_bias_mps2 += e.segment<3>(error::accel);
   lever_m += e.segment<3>(error::lever);
   lag_s += e[error::lag];
+  gyro_lag_s += e[error::gyro_lag];
 }
 
 ErrorVector difference(const MotionState& to, const MotionState& from) {
@@ -98,7 +79,7 @@ ErrorVector difference(const MotionState& to, const MotionState& from) {
   e << to.position_m - from.position_m, to.velocity_mps - from.velocity_mps,
       turn_of(to.world_from_sensor * from.world_from_sensor.conjugate()),
       to.gyro_bias_radps - from.gyro_bias_radps, to.accel_bias_mps2 - from.accel_bias_mps2,
-      to.lever_m - from.lever_m, to.lag_s - from.lag_s;
+      to.lever_m - from.lever_m, to.lag_s - from.lag_s, to.gyro_lag_s - from.gyro_lag_s;
   return e;
 }
 
@@ -106,7 +87,8 @@ void advance(MotionState& state, const InertialInput& input, double step_s, cons
              ErrorMatrix* transition) {
   const Eigen::Vector3d rate = input.turn_rate_radps - state.gyro_bias_radps;
   const Eigen::Vector3d force = input.specific_force_mps2 - state.accel_bias_mps2;
-  const Eigen::Quaterniond half = rotation_of(rate * (step_s / 2));
+  const Eigen::Quaterniond half =
+      rotation_of((rate * step_s + input.rate_change_radps * state.gyro_lag_s) / 2);
   const Eigen::Quaterniond middle = state.world_from_sensor * half;
   const Eigen::Matrix3d rotation = middle.toRotationMatrix();
   const Eigen::Vector3d pushed = rotation * force;
@@ -116,6 +98,8 @@ void advance(MotionState& state, const InertialInput& input, double step_s, cons
   state.world_from_sensor = (middle * half).normalized();
 
   Step step{.s = step_s, .rotation = rotation * step_s, .inertial = true};
+  step.turn_gyro_lag = rotation * input.rate_change_radps;
+  step.velocity_gyro_lag = step.turn_gyro_lag.cross(pushed) * (step_s / 2);
   step.velocity_turn = cross_matrix(-step_s * pushed);
   carry(state.covariance, step, transition);
   const auto scaled = [](double share, double size) { return share * share * size * scale_correlation_s; };
@@ -125,6 +109,9 @@ void advance(MotionState& state, const InertialInput& input, double step_s, cons
       step_s * (noise.accel_mps2 * noise.accel_mps2 + scaled(noise.accel_scale, acceleration.squaredNorm())));
   add_noise(p, error::turn,
             step_s * (noise.gyro_radps * noise.gyro_radps + scaled(noise.gyro_scale, rate.squaredNorm())));
+  // Where the rate leaps as no hand turns, it was a slip or a knock: what it was over the step nobody knows.
+  if (const double leap = input.rate_change_radps.norm(); leap > most_rate_change_radps)
+    add_noise(p, error::turn, leap * leap * step_s * step_s);
   add_noise(p, error::gyro, step_s * noise.gyro_walk * noise.gyro_walk);
   add_noise(p, error::accel, step_s * noise.accel_walk * noise.accel_walk);
 }

@@ -12,8 +12,9 @@
 namespace fude {
 
 namespace error {
-inline constexpr int position = 0, velocity = 3, turn = 6, gyro = 9, accel = 12, lever = 15, lag = 18;
-inline constexpr int size = 19;
+inline constexpr int position = 0, velocity = 3, turn = 6, gyro = 9, accel = 12, lever = 15, lag = 18,
+                     gyro_lag = 19;
+inline constexpr int size = 20;
 }  // namespace error
 
 using ErrorVector = Eigen::Matrix<double, error::size, 1>;
@@ -26,12 +27,11 @@ struct MotionState {
   Eigen::Vector3d gyro_bias_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d lever_m = Eigen::Vector3d::Zero();  // the point that a tracker sees, in the sensor's frame
-  double lag_s = 0;  // a tracker's samples show where it was this long before their stamps
+  double lag_s = 0;       // a tracker's samples show where it was this long before their stamps
+  double gyro_lag_s = 0;  // and the gyroscope's what turned this long before the accelerometer's of its stamp
   ErrorMatrix covariance = ErrorMatrix::Zero();
 
   Eigen::Vector3d tracked_point_m() const { return position_m + world_from_sensor * lever_m; }
-  // Of tracked_point_m, then of the rotation: metres², radians², about the world's axes.
-  Eigen::Matrix<double, 6, 6> pose_covariance() const;
 
   void add(const ErrorVector& e);
 };
@@ -42,11 +42,6 @@ ErrorVector difference(const MotionState& to, const MotionState& from);
 Eigen::Quaterniond rotation_of(const Eigen::Vector3d& turn_rad);
 Eigen::Vector3d turn_of(const Eigen::Quaterniond& rotation);  // shorter way round
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
-
-// The part of a tracker's lag that is the inertial unit's doing: its poses are given so much earlier, at the
-// tracker's time. A lag of some 3 ms is the delay of an inertial unit's filters, one of 6 ms and more the
-// tracker's own.
-double inertial_delay(double lag_s);
 
 // How inertial readings err and how a hand moves without them. Densities are per √Hz, walks per √s.
 struct MotionNoise {
@@ -64,10 +59,12 @@ struct MotionNoise {
 struct InertialInput {
   Eigen::Vector3d turn_rate_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_change_radps = Eigen::Vector3d::Zero();  // since the reading before
 };
 
-// The state `step_s` (> 0) later. Where `transition` is given, the step's error transition is multiplied onto
-// it from the left.
+// The state `step_s` (> 0) later. All of it is of the accelerometer's time: what a gyroscope that lags has
+// not told yet is what it would turn at its rate, so a change of the rate turns by lag times change. Where
+// `transition` is given, the step's error transition is multiplied onto it from the left.
 void advance(MotionState& state, const InertialInput& input, double step_s, const MotionNoise& noise,
              ErrorMatrix* transition = nullptr);
 

@@ -47,6 +47,12 @@ double heading_of(const Eigen::Quaterniond& q) { return wrapped(2 * std::atan2(q
 
 }  // namespace
 
+bool plausible(const InertialReading& reading) {
+  constexpr double most_radps = 75, most_mps2 = 1000;
+  return reading.turn_rate_radps.squaredNorm() < most_radps * most_radps &&
+         reading.specific_force_mps2.squaredNorm() < most_mps2 * most_mps2;
+}
+
 template <int Size>
 void OrientationFilter::LowPass<Size>::add(const Eigen::Matrix<double, Size, 1>& input, double step_s,
                                            double time_s) {
@@ -79,7 +85,7 @@ void OrientationFilter::start(const Eigen::Vector3d& force) {
 
 bool OrientationFilter::add(const InertialReading& reading, double step_s) {
   const Eigen::Vector3d& force = reading.specific_force_mps2;
-  if (!(step_s > 0) || !reading.turn_rate_radps.allFinite() || !force.allFinite()) return false;
+  if (!(step_s > 0) || !plausible(reading)) return false;
   if (!started_ || step_s > settings_.longest_step_s) {
     if (force.squaredNorm() < 1) return false;  // falling: there is no up
     const double before = heading_of(earth_from_sensor());

@@ -40,12 +40,15 @@ struct InertialReading {
   std::optional<Eigen::Vector3d> magnetic_field_ut;
 };
 
+// Finite, and no more than any unit on a tool measures (4000 degrees a second, 100 g).
+bool plausible(const InertialReading& reading);
+
 class OrientationFilter {
  public:
   explicit OrientationFilter(const OrientationSettings& settings = {});
 
-  // `step_s` since the reading before. A step that is not positive and numbers that are not finite give false
-  // and change nothing; a step above longest_step_s begins the inclination again and keeps the offset.
+  // `step_s` since the reading before. A step that is not positive and readings that are not plausible give
+  // false and change nothing; a step above longest_step_s begins the inclination again and keeps the offset.
   bool add(const InertialReading& reading, double step_s);
 
   // Earth: z up, y towards magnetic north where a field was ever sound, else where the first reading's

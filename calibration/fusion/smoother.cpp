@@ -124,16 +124,10 @@ class Smoother {
       const MotionState& end = node.broken ? node.predicted : smoothed[k];
       motion.covariance = joined ? ((1 - share) * smoothed[k - 1].covariance + share * end.covariance).eval()
                                  : end.covariance;
-      FusedPose pose;
+      FusedPose pose = pose_of(motion, sample.rate_radps);
       pose.time = sample.time;
       pose.state = sample.state;
       pose.placed = sample.placed;
-      pose.rate_radps = sample.rate_radps;
-      pose.velocity_mps =
-          motion.velocity_mps + motion.world_from_sensor * pose.rate_radps.cross(motion.lever_m);
-      pose.point_m = motion.tracked_point_m() - inertial_delay(motion.lag_s) * pose.velocity_mps;
-      pose.world_from_sensor = motion.world_from_sensor;
-      pose.covariance = motion.pose_covariance();
       out.push_back(pose);
     }
   }

@@ -195,8 +195,10 @@ TEST_F(LiveDevices, WhatATrackerSeesIsGivenOn) {
   seen.tracker_from_tool = {Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(0.25, -0.5, 1)};
   const std::size_t brush = tracker.add("brush");
 
-  PoseRelay::Wish wish{
-      .doors = {.openigtlink = 0, .vrpn = 0}, .named = {}, .fused_with_up = Eigen::Vector3d::UnitZ()};
+  PoseRelay::Wish wish{.doors = {.openigtlink = 0, .vrpn = 0},
+                       .named = {},
+                       .fused_with_up = Eigen::Vector3d::UnitZ(),
+                       .fused_ahead = {}};
   wish.named.push_back(*named_device("vrpn:127.0.0.1:" + std::to_string(tracker.vrpn()->port())));
   const auto relay = PoseRelay::open(std::move(wish), [](const std::string&) {});
   ASSERT_TRUE(relay) << relay.error().message;

@@ -1,4 +1,4 @@
-#include "rig/fuse_session.h"
+#include "rig/fusion/fuse_session.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,33 +13,10 @@
 #include "rig/import_session.h"
 #include "signal/units.h"
 #include "tests/calibration/fusion/inertial_recording.h"
-#include "tests/calibration/fusion/simulated_hand.h"
+#include "tests/rig/simulated_session.h"
 
 namespace fude {
 namespace {
-
-constexpr double step_s = 0.004;
-
-// A simulated hand: an inertial unit as device 1, and a tracker with its poses as device 2.
-Session session_of(const SimulatedHand& hand, const std::string& tracker_id) {
-  Session session;
-  session.devices.push_back({1, {.id = "0001:0001:", .name = "imu", .kind = DeviceKind::imu}});
-  session.devices.push_back({2, {.id = tracker_id, .name = "optical", .kind = DeviceKind::tracker}});
-  for (int i = 1; i <= 2500; ++i) {
-    const double t = i * step_s;
-    const InertialReading r = hand.reading(t, step_s);
-    ImuSample imu{.time = {.host = at_second(t)},
-                  .turn_rate_radps = r.turn_rate_radps,
-                  .specific_force_mps2 = r.specific_force_mps2,
-                  .magnetic_field_ut = r.magnetic_field_ut};
-    session.samples.push_back({1, imu, 0});
-    if (i % 5 != 0) continue;
-    PoseSample pose{.time = {.host = at_second(t)}, .tool = "sensor"};
-    pose.tracker_from_tool = {hand.rotation(t), hand.position(t)};
-    session.samples.push_back({2, pose, 0});
-  }
-  return session;
-}
 
 std::set<FuseSource> named(const char* names) { return fuse_sources(names).value(); }
 
@@ -74,7 +51,7 @@ TEST(FuseSession, PosesOfATrackerAreUsedByThemselves) {
       const double t = seconds(row.time.time_since_epoch());
       ASSERT_TRUE(row.position_m.has_value());
       EXPECT_LT((*row.position_m - hand.position(t)).norm(), 3e-3) << use << smooth;
-      EXPECT_GT(row.variance.minCoeff(), 0);
+      EXPECT_GT(row.covariance.diagonal().minCoeff(), 0);
     }
   }
 }

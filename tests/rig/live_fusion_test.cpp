@@ -1,12 +1,12 @@
 // The pose that is fused as samples come is the one that a recording of them gives.
-#include "rig/live_fusion.h"
+#include "rig/fusion/live_fusion.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <vector>
 
-#include "rig/fuse_session.h"
+#include "rig/fusion/fuse_session.h"
 #include "tests/calibration/fusion/inertial_recording.h"
 #include "tests/calibration/fusion/simulated_hand.h"
 
@@ -45,7 +45,7 @@ TEST(LiveFusion, IsWhatARecordingOfTheSameSamplesGives) {
     add(1, inertial(hand, i));
     if (i % 5 == 0 && i < steps - 100) add(2, seen(hand, i));  // lost at the end
   }
-  const auto recorded = fuse_session(session, {.use = fuse_sources("gyro,accel,pose").value()});
+  const auto recorded = fuse_session(session, {.use = fuse_sources("gyro,accel,pose").value(), .up = up});
   ASSERT_TRUE(recorded) << recorded.error().message;
   ASSERT_EQ(live.size(), recorded->rows.size());
   for (std::size_t i = 0; i < live.size(); ++i) {
@@ -57,8 +57,8 @@ TEST(LiveFusion, IsWhatARecordingOfTheSameSamplesGives) {
     EXPECT_EQ(live[i].origin, row.state == FusionState::ok ? PoseOrigin::measured : PoseOrigin::predicted);
     EXPECT_EQ(live[i].tracker_from_tool.translation, *row.position_m) << i;
     EXPECT_EQ(live[i].tracker_from_tool.rotation.coeffs(), row.world_from_sensor->coeffs());
-    EXPECT_EQ(live[i].covariance->diagonal().tail<3>(), row.variance.head<3>());
-    EXPECT_EQ(live[i].covariance->diagonal().head<3>(), row.variance.tail<3>());
+    EXPECT_EQ(live[i].covariance->diagonal().tail<3>(), row.covariance.diagonal().head<3>());
+    EXPECT_EQ(live[i].covariance->diagonal().head<3>(), row.covariance.diagonal().tail<3>());
   }
   EXPECT_EQ(live[steps / 2].origin, PoseOrigin::measured);
   EXPECT_LT((live[steps / 2].tracker_from_tool.translation - hand.position((steps / 2 + 1) * step_s)).norm(),
@@ -121,6 +121,52 @@ TEST(LiveFusion, AnInertialUnitMayComeLater) {
   }
   ASSERT_TRUE(last && last->valid);
   EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s)).norm(), 2e-3);
+}
+
+// A hub is unplugged and comes back: the same unit and the same tool are now other devices.
+TEST(LiveFusion, SourcesComeBackAsOtherDevices) {
+  const SimulatedHand hand;
+  LiveFusion fusion(up);
+  std::optional<PoseSample> last;
+  for (int i = 1; i <= steps; ++i) {
+    const bool away = i > steps / 2 && i <= steps / 2 + 300;  // 1.2 s
+    const std::size_t other = i > steps / 2 ? 10 : 0;
+    if (away) continue;
+    if (const auto pose = fusion.add(1 + other, inertial(hand, i))) last = pose;
+    if (i % 5 == 0) fusion.add(2 + other, seen(hand, i));
+  }
+  ASSERT_TRUE(last && last->valid);
+  EXPECT_EQ(last->origin, PoseOrigin::measured);
+  EXPECT_EQ(last->time.host, at_second(steps * step_s));
+  EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s)).norm(), 3e-3);
+}
+
+// The unit's battery is empty: the tracker goes on alone.
+TEST(LiveFusion, TheTrackerGoesOnWithoutTheUnit) {
+  const SimulatedHand hand;
+  LiveFusion fusion(up);
+  std::optional<PoseSample> last;
+  for (int i = 1; i <= steps; ++i) {
+    if (i <= steps / 2) fusion.add(1, inertial(hand, i));
+    if (i % 5 == 0) last = fusion.add(2, seen(hand, i));
+  }
+  ASSERT_TRUE(last && last->valid);
+  EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s)).norm(), 3e-3);
+}
+
+TEST(LiveFusion, AheadOfItsTimeForADisplay) {
+  const SimulatedHand hand;
+  constexpr Duration ahead = std::chrono::milliseconds(20);
+  LiveFusion fusion(up, ahead);
+  std::optional<PoseSample> last;
+  for (int i = 1; i <= steps; ++i) {
+    last = fusion.add(1, inertial(hand, i));
+    if (i % 5 == 0) fusion.add(2, seen(hand, i));
+  }
+  ASSERT_TRUE(last && last->valid);
+  EXPECT_EQ(last->origin, PoseOrigin::predicted);
+  EXPECT_EQ(last->time.host, at_second(steps * step_s) + ahead);
+  EXPECT_LT((last->tracker_from_tool.translation - hand.position(steps * step_s + 0.02)).norm(), 3e-3);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <memory>
 
 #include "calibration/fusion/fix.h"
 
@@ -19,10 +20,11 @@ MotionState some_state() {
   s.accel_bias_mps2 = {0.1, 0.2, -0.1};
   s.lever_m = {0.02, -0.03, 0.1};
   s.lag_s = 0.004;
+  s.gyro_lag_s = 0.001;
   return s;
 }
 
-const InertialInput some_input{{0.8, -1.5, 2.0}, {1.0, 4.0, 8.0}};
+const InertialInput some_input{{0.8, -1.5, 2.0}, {1.0, 4.0, 8.0}, {0.3, -0.2, 0.5}};
 
 TEST(MotionState, AddUndoesDifference) {
   const MotionState a = some_state();
@@ -72,6 +74,26 @@ TEST(MotionState, CovarianceStaysSymmetricAndPositive) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<ErrorMatrix>(s.covariance).eigenvalues().minCoeff(), 0);
 }
 
+// A sheet that bows by some millimetres.
+std::shared_ptr<const SmoothField> bow() {
+  Eigen::MatrixXd points(9, 2), heights(9, 1);
+  for (int i = 0; i < 9; ++i) {
+    const double x = 400.0 * (i % 3) - 200, y = 400.0 * (i / 3) - 200;
+    points.row(i) << x, y;
+    heights(i, 0) = 2e-4 * x * x - 1e-4 * x * y + 0.02 * y;
+  }
+  return std::make_shared<const SmoothField>(SmoothField::polynomial(points, heights, FreeShape::quadric));
+}
+
+TEST(ContactFix, IsMetOnTheSheet) {
+  const MotionState s = some_state();
+  const Eigen::Vector3d tip = s.tracked_point_m() + s.world_from_sensor * Eigen::Vector3d(0, 0.01, -0.15);
+  ContactFix fix{.tip_offset_m = {0, 0.01, -0.15}, .sheet = bow()};
+  const double x = 1e3 * tip.x(), y = 1e3 * tip.y();
+  const double height_m = 1e-3 * (2e-4 * x * x - 1e-4 * x * y + 0.02 * y);
+  EXPECT_NEAR(innovation_of(fix, s, Eigen::Vector3d::Zero(), 0).residual[0], height_m - tip.z(), 1e-9);
+}
+
 class FixJacobian : public testing::TestWithParam<Fix> {};
 
 TEST_P(FixJacobian, IsTheDerivativeOfTheResidual) {
@@ -93,11 +115,12 @@ INSTANTIATE_TEST_SUITE_P(
     AllKinds, FixJacobian,
     testing::Values(
         Fix(PointFix{.point_m = {0.3, -0.2, 0.6}}),
-        Fix(PointFix{.point_m = {0.3, -0.2, 0.6}, .sensor_offset_m = Eigen::Vector3d(0.01, 0, -0.1)}),
+        Fix(PointFix{.point_m = {0.3, -0.2, 0.6}, .offset_m = Eigen::Vector3d(0.01, 0, -0.1)}),
         Fix(PoseFix{.point_m = {0.3, -0.2, 0.6}, .world_from_sensor = some_state().world_from_sensor}),
         Fix(RangeFix{
             .receiver_m = {-0.1, 0.4, 0.9}, .emitter_offset_m = {0.02, 0.01, 0.1}, .distance_m = 0.8}),
         Fix(ContactFix{.tip_offset_m = {0, 0.01, -0.15}}),
+        Fix(ContactFix{.tip_offset_m = {0, 0.01, -0.15}, .sheet = bow()}),
         Fix(AttitudeFix{.world_from_sensor = some_state().world_from_sensor,
                         .inclination_sigma_rad = 0.1,
                         .heading_sigma_rad = 0.2})));

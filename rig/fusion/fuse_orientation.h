@@ -4,8 +4,8 @@
 #include <set>
 #include <vector>
 
-#include "rig/fuse_samples.h"
-#include "rig/fused_table.h"
+#include "rig/fusion/fuse_samples.h"
+#include "rig/fusion/fused_table.h"
 
 namespace fude {
 

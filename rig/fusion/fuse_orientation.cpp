@@ -1,5 +1,6 @@
-#include "rig/fuse_orientation.h"
+#include "rig/fusion/fuse_orientation.h"
 
+#include <cmath>
 #include <optional>
 
 #include "calibration/fusion/smoother.h"
@@ -16,7 +17,7 @@ class GyroOnly {
   }
   FusedRow row(Timestamp time) const {
     FusedRow row{.time = time, .state = FusionState::ok, .world_from_sensor = q_};
-    row.variance.tail<3>().setConstant(sigma_ * sigma_);
+    row.covariance.diagonal().tail<3>().setConstant(sigma_ * sigma_);
     return row;
   }
 
@@ -37,12 +38,15 @@ FusedSession fuse_orientation(const std::vector<UsableSample>& samples, const st
   const bool alone = !use.contains(FuseSource::accel);
   std::vector<OrientationInput> inputs;
   std::vector<std::size_t> input_rows;
+  LeapWatch leap_watch;
   std::optional<Timestamp> last_good;
   for (const UsableSample& sample : samples) {
     const auto& imu = std::get<ImuSample>(sample.what);
     const double step = last_good ? seconds(sample.time - *last_good) : settings.longest_step_s / 100;
     const InertialReading reading = reading_of(imu, use);
-    const bool good = imu.valid && (alone ? step > 0 : filter.add(reading, step));
+    const bool believed = !last_good || leap_watch.believes(*last_good, sample.time);
+    const bool good =
+        imu.valid && believed && (alone ? step > 0 && plausible(reading) : filter.add(reading, step));
     if (good) {
       if (alone && last_good) gyro.add(reading, step);
       last_good = sample.time;
@@ -50,16 +54,18 @@ FusedSession fuse_orientation(const std::vector<UsableSample>& samples, const st
       inputs.push_back({sample.time, reading});
       input_rows.push_back(fused.rows.size());
     } else {
-      ++(imu.valid ? fused.counts.repeated : fused.counts.unsound);
+      ++(!believed                ? fused.lateness.leaps
+         : imu.valid && step <= 0 ? fused.counts.repeated
+                                  : fused.counts.unsound);
     }
-    FusedRow row{.time = sample.time};
+    FusedRow row{.time = sample.stamped};
     if (last_good && alone) {
-      row = gyro.row(sample.time);
+      row = gyro.row(sample.stamped);
     } else if (last_good) {
       row.world_from_sensor = filter.earth_from_sensor();
-      row.variance.tail<3>() = filter.variance();
+      row.covariance.diagonal().tail<3>() = filter.variance();
     }
-    const double silence = last_good ? seconds(sample.time - *last_good) : 1e9;
+    const double silence = last_good ? std::abs(seconds(sample.time - *last_good)) : 1e9;
     row.state = silence <= 0.05  ? FusionState::ok
                 : silence <= 1.0 ? FusionState::predicted
                                  : FusionState::lost;

@@ -1,7 +1,9 @@
-#include "rig/fused_table.h"
+#include "rig/fusion/fused_table.h"
 
 #include <cstdio>
 #include <cstdlib>
+
+#include "rig/fusion/fix_of.h"
 
 namespace fude {
 namespace {
@@ -11,6 +13,27 @@ const char* name_of(FusionState state) {
 }
 
 }  // namespace
+
+FusedRow row_of(const FusedPose& pose, Timestamp stamped) {
+  FusedRow row{.time = stamped, .state = pose.state};
+  if (pose.world_from_sensor.coeffs().allFinite()) row.world_from_sensor = pose.world_from_sensor;
+  if (pose.state != FusionState::lost) row.position_m = pose.point_m;
+  row.covariance = pose.covariance;
+  return row;
+}
+
+PoseSample sample_of(const FusedRow& row, const std::string& tool, std::uint64_t sequence) {
+  PoseSample sample{.tool = tool};
+  sample.time = {.host = row.time, .stamped_by = StampedBy::recording, .sequence = sequence};
+  sample.valid = row.position_m && row.world_from_sensor;
+  sample.origin = !sample.valid                  ? PoseOrigin::none
+                  : row.state == FusionState::ok ? PoseOrigin::measured
+                                                 : PoseOrigin::predicted;
+  sample.tracker_from_tool = {row.world_from_sensor.value_or(Eigen::Quaterniond::Identity()),
+                              row.position_m.value_or(Eigen::Vector3d::Zero())};
+  if (row.world_from_sensor) sample.covariance = rotation_first(row.covariance);
+  return sample;
+}
 
 std::string csv_of(const FusedSession& fused) {
   std::string text = "t_s,x_m,y_m,z_m,qw,qx,qy,qz,var_0,var_1,var_2,var_3,var_4,var_5,state\n";
@@ -37,7 +60,7 @@ std::string csv_of(const FusedSession& fused) {
       text += ",,,,";
     for (int i = 0; i < 6; ++i) {
       if (i < 3 ? row.position_m.has_value() : q.has_value())
-        number(row.variance[i], "%.6g");
+        number(row.covariance(i, i), "%.6g");
       else
         text += ',';
     }

@@ -17,8 +17,8 @@ struct FuseGeometry {
   std::vector<Eigen::Vector3d> receivers_m;  // in the world
 };
 
-// From the keys tip_m ([x, y, z]), emitter_m (such, or an array of such) and receivers_m (an array of such)
-// of the calibrations that the session carries; a later one goes before. Errors: malformed.
-Result<FuseGeometry> fuse_geometry(const Session& session);
+// From the keys tip_m ([x, y, z]), emitter_m (such, or an array of such) and receivers_m (an array of such).
+// A later one goes before. Errors: malformed.
+Result<FuseGeometry> fuse_geometry(const std::vector<RecordedCalibration>& calibrations);
 
 }  // namespace fude

@@ -1,4 +1,4 @@
-#include "rig/fuse_geometry.h"
+#include "rig/fusion/fuse_geometry.h"
 
 #include <toml++/toml.h>
 
@@ -24,7 +24,7 @@ Result<std::vector<Eigen::Vector3d>> places_of(const toml::array& array, const s
     const auto place = vector_of(&node);
     if (!place)
       return failure(Fault::malformed,
-                     "the session's calibration " + calibration + ": " + key + " are not [x, y, z] each");
+                     "the calibration " + calibration + ": " + key + " are not [x, y, z] each");
     places.push_back(*place);
   }
   return places;
@@ -32,14 +32,14 @@ Result<std::vector<Eigen::Vector3d>> places_of(const toml::array& array, const s
 
 }  // namespace
 
-Result<FuseGeometry> fuse_geometry(const Session& session) {
+Result<FuseGeometry> fuse_geometry(const std::vector<RecordedCalibration>& calibrations) {
   FuseGeometry geometry;
-  for (const RecordedCalibration& calibration : session.calibrations) {
+  for (const RecordedCalibration& calibration : calibrations) {
     toml::table table;
     try {
       table = toml::parse(calibration.toml);
     } catch (const toml::parse_error& wrong) {
-      return failure(Fault::malformed, "the session's calibration " + calibration.name +
+      return failure(Fault::malformed, "the calibration " + calibration.name +
                                            " cannot be read: " + std::string(wrong.description()));
     }
     if (const auto tip = vector_of(table.get("tip_m"))) geometry.tip_m = tip;

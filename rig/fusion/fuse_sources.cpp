@@ -1,4 +1,4 @@
-#include "rig/fuse_sources.h"
+#include "rig/fusion/fuse_sources.h"
 
 #include <algorithm>
 #include <string>

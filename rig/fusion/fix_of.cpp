@@ -1,4 +1,4 @@
-#include "rig/fix_of.h"
+#include "rig/fusion/fix_of.h"
 
 namespace fude {
 namespace {
@@ -11,10 +11,7 @@ PoseFix fix_of(const PoseSample& sample) {
   PoseFix pose{.point_m = sample.tracker_from_tool.translation,
                .world_from_sensor = sample.tracker_from_tool.rotation};
   if (sample.covariance) {
-    pose.covariance.topLeftCorner<3, 3>() = sample.covariance->bottomRightCorner<3, 3>();
-    pose.covariance.bottomRightCorner<3, 3>() = sample.covariance->topLeftCorner<3, 3>();
-    pose.covariance.topRightCorner<3, 3>() = sample.covariance->bottomLeftCorner<3, 3>();
-    pose.covariance.bottomLeftCorner<3, 3>() = sample.covariance->topRightCorner<3, 3>();
+    pose.covariance = rotation_first(*sample.covariance);
   } else {
     pose.covariance.diagonal().head<3>().setConstant(position_sigma_m * position_sigma_m);
     pose.covariance.diagonal().tail<3>().setConstant(turn_sigma_rad * turn_sigma_rad);
@@ -32,14 +29,22 @@ PointFix point_of(const PoseFix& pose) {
   return {.point_m = pose.point_m, .covariance_m2 = pose.covariance.topLeftCorner<3, 3>()};
 }
 
-FusionSettings fusion_settings(const Eigen::Vector3d& up, bool inertial, bool use_field) {
+Eigen::Matrix<double, 6, 6> rotation_first(const Eigen::Matrix<double, 6, 6>& place_first) {
+  Eigen::Matrix<double, 6, 6> turned;
+  turned << place_first.bottomRightCorner<3, 3>(), place_first.bottomLeftCorner<3, 3>(),
+      place_first.topRightCorner<3, 3>(), place_first.topLeftCorner<3, 3>();
+  return turned;
+}
+
+FusionSettings fusion_settings(const FusionRig& rig) {
   FusionSettings settings;
-  settings.noise.gravity_mps2 = -9.81 * up.normalized();
-  settings.world_from_earth = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
-  settings.use_field = use_field;
-  if (inertial) {
+  settings.noise.gravity_mps2 = -9.81 * rig.up.normalized();
+  settings.world_from_earth = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), rig.up);
+  settings.use_field = rig.north_is_y;
+  if (rig.inertial) settings.gyro_lag_sigma_s = 0.001;
+  if (rig.inertial && rig.tracker) {
     settings.lever_sigma_m = 0.05;
-    settings.lag_sigma_s = 0.01;
+    settings.lag_sigma_s = rig.tracker_in_time ? 0.002 : 0.01;
   }
   return settings;
 }
