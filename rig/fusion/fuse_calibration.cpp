@@ -86,9 +86,9 @@ class Applying {
       const auto found = numbers_in(fields, key);
       return found && found->size() == 1 && std::isfinite(found->front()) ? found->front() : 0;
     };
-    if (number("drift") != 0) {
+    if (number("drift_ppm") != 0) {
       if (calibration.report.session == session_identity(session_)) {
-        delay.drift = number("drift");
+        delay.drift = 1e-6 * number("drift_ppm");
         delay.reference_s = number("reference_s");
       } else {
         to_.notes.push_back("the drift of " + name + " is of another session and is not applied");

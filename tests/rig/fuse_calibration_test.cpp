@@ -89,14 +89,16 @@ TEST(FuseCalibration, OfItsAxes) {
     sample.turn_rate_radps = axes.tool_from_sensor.conjugate() * sample.turn_rate_radps;
     sample.specific_force_mps2 = axes.tool_from_sensor.conjugate() * sample.specific_force_mps2;
   });
-  const FusedSession with = fused_with(session, {stored("axes", to_fields(axes))});
+  const FusedSession with = fused_with(session, {stored("imu-axes", to_fields(axes))});
   EXPECT_LT(accuracy(with).position_m, 1e-3);
   EXPECT_LT(accuracy(with).turn_rad, 0.01);
   EXPECT_GT(accuracy(fused_with(session, {})).turn_rad, 0.01);
 }
 
-Fields delay_of(double offset_s, double drift = 0) {
-  return {{"offset_s", offset_s}, {"drift", drift}, {"streams", std::vector<std::string>{"imu", "optical"}}};
+Fields delay_of(double offset_s, double drift_ppm = 0) {
+  return {{"offset_s", offset_s},
+          {"drift_ppm", drift_ppm},
+          {"streams", std::vector<std::string>{"imu", "optical"}}};
 }
 
 // Even one beyond what late samples are kept for.
@@ -120,7 +122,7 @@ TEST(FuseCalibration, OfADelay) {
 }
 
 TEST(FuseCalibration, ADriftIsOfItsOwnSession) {
-  const FusedSession fused = fused_with(tracked(), {stored("delay", delay_of(0, 1e-3))});
+  const FusedSession fused = fused_with(tracked(), {stored("delay", delay_of(0, 1000))});
   EXPECT_TRUE(told(fused, "of another session"));
   EXPECT_LT(accuracy(fused).position_m, 1e-3);
 }
