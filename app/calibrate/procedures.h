@@ -13,6 +13,7 @@ void add_calibrate_camera_pose(CLI::App& calibrate, int& status);
 void add_calibrate_check(CLI::App& calibrate, int& status);
 void add_calibrate_common_motion(CLI::App& calibrate, int& status);
 void add_calibrate_distortion(CLI::App& calibrate, int& status);
+void add_calibrate_delay(CLI::App& calibrate, int& status);
 void add_calibrate_imu(CLI::App& calibrate, int& status);
 void add_calibrate_imu_axes(CLI::App& calibrate, int& status);
 void add_calibrate_list(CLI::App& calibrate, int& status);

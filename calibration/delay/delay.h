@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "calibration/delay/delay_estimate.h"
 #include "calibration/delay/witness.h"
@@ -27,6 +28,11 @@ enum class DelaySide { a, b };
 class DelayProcedure {
  public:
   DelayProcedure(WitnessReader a, WitnessReader b) : a_(std::move(a)), b_(std::move(b)) {}
+
+  // Before its first sample: where the tip of a stream's tool is, and the sheet that it touches.
+  void know(DelaySide side, std::optional<Eigen::Vector3d> tip_m, std::optional<SurfaceCalibration> surface) {
+    (side == DelaySide::a ? a_ : b_).know(tip_m, std::move(surface));
+  }
 
   Progress add(DelaySide side, const Sample& sample);
 

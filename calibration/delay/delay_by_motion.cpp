@@ -31,12 +31,25 @@ std::optional<std::pair<Sight, std::vector<MotionCandidate>>> best_sight(const s
   return best;
 }
 
-// What is left over, as time: over the speed at which the motion changes.
+// What is left over, as time: over how fast the motion usually changes.
 std::vector<double> block_residuals(const MotionFit& fit) {
+  double information = 0;
+  for (const MotionBlock& block : fit.blocks) information += block.information / double(fit.blocks.size());
   std::vector<double> residuals;
-  for (const MotionBlock& block : fit.blocks)
-    if (block.information > 0) residuals.push_back(std::sqrt(block.squares / block.information));
+  for (const MotionBlock& block : fit.blocks) residuals.push_back(std::sqrt(block.squares / information));
   return residuals;
+}
+
+// Of the blocks in which something moved, whether the map explains it.
+std::vector<InTime> agreement(const MotionFit& fit) {
+  constexpr double least_motion = 0.05;  // of the usual
+  double motion = 0;
+  for (const MotionBlock& block : fit.blocks) motion += block.motion / double(fit.blocks.size());
+  std::vector<InTime> blocks;
+  for (const MotionBlock& block : fit.blocks)
+    if (block.motion > least_motion * motion)
+      blocks.push_back({block.t_s, block.squares < least_explained * block.motion});
+  return blocks;
 }
 
 std::vector<DelayMoment> course_of(const MotionFit& fit) {
@@ -140,11 +153,7 @@ DelayFinding delay_by_motion(const Witness& a, const Witness& b, const DelaySear
     start.drift = 0;
     if (const auto even = fit_motion(*sight.a, *sight.b, sight.seen, start, false)) fit = even;
   }
-  std::vector<InTime> blocks;
-  for (const MotionBlock& block : fit->blocks)
-    if (block.motion * double(fit->blocks.size()) > 0.1 * fit->blocks.front().motion)
-      blocks.push_back({block.t_s, block.squares < least_explained * block.motion});
-  if (const auto at = break_in_time(blocks))
+  if (const auto at = break_in_time(agreement(*fit)))
     return tl::unexpected(restart_in_words(a.name + " or " + b.name, "at " + in_words(*at)));
   if (fit->explained < least_explained) return tl::unexpected(strangers(a, b, fit->explained));
   estimate.method = sight.what + " as " + a.name + " and " + b.name + " both see it";

@@ -75,12 +75,6 @@ double Witness::end_s() const {
   return std::isfinite(end) ? end : 0;
 }
 
-WitnessReader::WitnessReader(std::string name, std::optional<Eigen::Vector3d> tip_m,
-                             std::optional<SurfaceCalibration> surface)
-    : tip_m_(tip_m), surface_(std::move(surface)) {
-  witness_.name = std::move(name);
-}
-
 void WitnessReader::see_point(const Eigen::Vector3d& point_m, double t_s) {
   witness_.path.add(t_s, surface_ ? Eigen::Vector3d(on_paper(*surface_, point_m) / mm_per_m) : point_m);
   witness_.levelled = surface_.has_value();
@@ -170,6 +164,21 @@ struct WitnessReader::Reading {
 void WitnessReader::add(const Sample& sample) {
   ++witness_.seen;
   if (!std::visit(Reading{*this}, sample)) ++witness_.unusable;
+}
+
+void WitnessReader::forget_before(double t_s) {
+  for (Series* series : {&witness_.path, &witness_.turn_rate, &force_, &contact_}) {
+    const auto first = std::lower_bound(series->t_s.begin(), series->t_s.end(), t_s) - series->t_s.begin();
+    series->t_s.erase(series->t_s.begin(), series->t_s.begin() + first);
+    series->values.erase(series->values.begin(), series->values.begin() + first);
+  }
+  std::erase_if(witness_.touches, [&](const Touch& touch) { return touch.t_s < t_s; });
+}
+
+void WitnessReader::begin_anew() {
+  WitnessReader anew(witness_.name);
+  anew.know(tip_m_, std::move(surface_));
+  *this = std::move(anew);
 }
 
 Witness WitnessReader::witness() const {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/delay/series.h"
@@ -34,9 +35,13 @@ struct Witness {
 
 class WitnessReader {
  public:
+  explicit WitnessReader(std::string name) { witness_.name = std::move(name); }
+
   // Where the tip is in the tool's frame, else its origin goes for it; and the sheet, where it is known.
-  explicit WitnessReader(std::string name, std::optional<Eigen::Vector3d> tip_m = {},
-                         std::optional<SurfaceCalibration> surface = {});
+  void know(std::optional<Eigen::Vector3d> tip_m, std::optional<SurfaceCalibration> surface) {
+    tip_m_ = tip_m;
+    surface_ = std::move(surface);
+  }
 
   // Seconds of the sample's host time. Poses, positions, force-feedback arms, pens, fingers and inertial
   // units; others show nothing.
@@ -45,6 +50,12 @@ class WitnessReader {
   // Touches of a pen follow from contact: chatter of less than 30 ms is none. Jolts: where the specific force
   // changes between two readings by more than eight times what is usual, and most within a tenth of a second.
   Witness witness() const;
+
+  // Samples before that are as if they had never been.
+  void forget_before(double t_s);
+  void begin_anew();
+  bool restarted() const { return witness_.restarted_s.has_value(); }
+  std::optional<double> last_s() const { return last_s_; }
 
   std::size_t samples() const { return witness_.seen - witness_.unusable; }
   std::size_t touches() const { return witness_.touches.size(); }
