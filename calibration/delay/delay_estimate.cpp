@@ -11,23 +11,30 @@ bool moves(const Witness& w) { return !w.path.empty(); }
 bool touches(const Witness& w) { return !w.touches.empty(); }
 bool has_height(const Witness& w) { return moves(w) && !w.flat; }
 
+// To first order in the drift.
+DelayFinding opposite(DelayFinding found) {
+  if (!found) return found;
+  DelayLine& line = found->line;
+  line = {-line.offset_s, -line.drift, line.reference_s};
+  found->drift = -found->drift;
+  for (DelayMoment& moment : found->course) moment.offset_s = -moment.offset_s;
+  return found;
+}
+
 }  // namespace
 
 DelayFinding delay_between(const Witness& a, const Witness& b, const DelaySearch& search) {
-  if ((turns(a) && turns(b)) || (has_height(a) && has_height(b)) ||
-      (a.flat && b.flat && moves(a) && moves(b)))
-    return delay_by_motion(a, b, search);
-  if (touches(a) && has_height(b)) return delay_by_touches(a, b, search);
-  if (touches(b) && has_height(a)) {
-    auto found = delay_by_touches(b, a, search);
-    if (!found) return found;
-    // To first order in the drift.
-    DelayLine& line = found->line;
-    line = {-line.offset_s, -line.drift, line.reference_s};
-    found->drift = -found->drift;
-    for (DelayMoment& moment : found->course) moment.offset_s = -moment.offset_s;
-    return found;
+  const bool one_motion = (turns(a) && turns(b)) || (has_height(a) && has_height(b)) ||
+                          (a.flat && b.flat && moves(a) && moves(b));
+  const bool felt = touches(a) && has_height(b), felt_by_b = touches(b) && has_height(a);
+  if (one_motion) {
+    auto found = delay_by_motion(a, b, search);
+    if (found || !(felt || felt_by_b)) return found;
+    const auto by_touches = felt ? delay_by_touches(a, b, search) : opposite(delay_by_touches(b, a, search));
+    return by_touches ? by_touches : found;
   }
+  if (felt) return delay_by_touches(a, b, search);
+  if (felt_by_b) return opposite(delay_by_touches(b, a, search));
   if (touches(a) && touches(b)) return delay_by_pairs(a, b, search);
   for (const Witness* w : {&a, &b})
     if (w->lifts && w->touches.empty()) return tl::unexpected(w->name + " felt no touch: make 40 strokes");

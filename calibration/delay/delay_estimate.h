@@ -46,7 +46,8 @@ DelayFinding delay_by_pairs(const Witness& a, const Witness& b, const DelaySearc
 DelayFinding delay_by_motion(const Witness& a, const Witness& b, const DelaySearch& search);
 
 // The way that suits what the two are: the motion that both see (turn rates, or ways) where there is one,
-// else touches on a way, else touches of both. A tablet and a tracker are brought together by touches.
+// else, also where they turn out not to see the same, touches on a way, else touches of both. A tablet and a
+// tracker are brought together by touches.
 DelayFinding delay_between(const Witness& a, const Witness& b, const DelaySearch& search);
 
 // A drift counts from three standard deviations on (by chance in one of 400 sessions), and where it moves the

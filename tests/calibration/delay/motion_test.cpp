@@ -7,6 +7,7 @@
 #include "calibration/delay/delay_estimate.h"
 #include "calibration/delay/motion_fit.h"
 #include "calibration/report.h"
+#include "tests/fakes/scripted_strokes.h"
 #include "tests/fakes/scripted_tracker.h"
 
 namespace fude {
@@ -110,6 +111,25 @@ TEST(Motion, StrangersEvenMotionAndJumpingClocksAreNamed) {
   even.waves[0].hz = 1;
   a.path = seen(even, 100, 40, 0, 0, 1e-4, turned(0), 2);
   refused({.name = "b", .path = seen(even, 100, 40, 0.1, 0, 1e-4, turned(0), 3)}, "vary your speed");
+}
+
+// An inertial unit on the easel feels the brush come down and does not turn with it.
+TEST(Motion, JoltsServeWhereNoTurningIsSeen) {
+  const ScriptedStrokes script{.offset_s = 0.042};
+  auto seen = script.seen(3);
+  std::erase_if(seen.touches, [](const Touch& touch) { return !touch.down; });
+  Noise random(1);
+  Witness unit{.name = "imu", .touches = seen.touches}, tracker{.name = "tracker", .path = seen.path};
+  for (const double t : seen.path.t_s) {
+    unit.turn_rate.add(t, random.vector(0.01));
+    tracker.turn_rate.add(t, random.vector(0.01));
+  }
+  const auto delay = delay_between(unit, tracker, {});
+  ASSERT_TRUE(delay) << delay.error();
+  EXPECT_NEAR(delay->line.offset_s, 0.042, 1e-3);
+  const auto back = delay_between(tracker, unit, {});
+  ASSERT_TRUE(back) << back.error();
+  EXPECT_NEAR(back->line.offset_s, -delay->line.offset_s, 1e-9);
 }
 
 TEST(Pairs, TouchesFeltTwice) {
