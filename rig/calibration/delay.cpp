@@ -52,7 +52,6 @@ class DelayCalibrator final : public Calibrator {
     }
     const auto delay = procedure_.finish();
     auto outcome = outcome_of(delay);
-    outcome.report.reference = found[0].part;
     outcome.report.tool = found[1].part;
     // A drift counts in its session alone: without devices it is never taken for another.
     if (delay && delay->value.drift_ppm) return outcome;
