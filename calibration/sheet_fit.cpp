@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -100,6 +101,26 @@ double depth(const SmoothField& height, std::span<const Eigen::Vector3d> points)
   return high - low;
 }
 
+// How many different coordinates the points have along an axis, those of one row of a grid being one.
+std::size_t lines_across(std::span<const Eigen::Vector3d> points, int axis) {
+  constexpr double one_line = 0.05;  // of the extent
+  std::vector<double> at;
+  for (const Eigen::Vector3d& p : points) at.push_back(p(axis));
+  std::sort(at.begin(), at.end());
+  const double apart = one_line * (at.back() - at.front());
+  std::size_t lines = 1;
+  for (double begun = at.front(); const double x : at)
+    if (x - begun > apart) {
+      ++lines;
+      begun = x;
+    }
+  return lines;
+}
+
+SmoothField bowl_through(std::span<const Eigen::Vector3d> points) {
+  return SmoothField::fit(places(points), heights(points), FreeShape::quadric);
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> thinned(std::span<const Eigen::Vector3d> points) {
@@ -120,37 +141,145 @@ std::vector<Eigen::Vector3d> thinned(std::span<const Eigen::Vector3d> points) {
 
 SmoothField sheet_through(std::span<const Eigen::Vector3d> points) {
   const Eigen::MatrixXd at = places(points), z = heights(points);
-  SmoothField bowl = SmoothField::fit(at, z, FreeShape::quadric);
-  constexpr std::size_t spare = 6;  // beyond the terms of the polynomial
-  if (points.size() < terms(FreeShape::bowed, 2) + spare) return bowl;
+  SmoothField bowl = bowl_through(points);
+  constexpr std::size_t spare = 6;        // beyond the terms of the polynomial
+  constexpr std::size_t for_quartic = 5;  // a fourth power is not told by fewer
+  if (points.size() < terms(FreeShape::bowed, 2) + spare || lines_across(points, 0) < for_quartic ||
+      lines_across(points, 1) < for_quartic)
+    return bowl;
   SmoothField bow = SmoothField::fit(at, z, FreeShape::bowed);
   return bow.left_out_residuals().norm() < bowl.left_out_residuals().norm() ? bow : bowl;
 }
 
-std::optional<SheetFit> fit_sheet(std::span<const Eigen::Vector3d> points, double finest) {
-  if (!spread_out(points)) return std::nullopt;
-  SheetFit fit{nearest_to_half(points), std::vector<bool>(points.size(), false)};
-  const double few = 1 + 5 / double(points.size() - 6);  // Rousseeuw 1984: a median of few is too small
+namespace {
+
+std::vector<Eigen::Vector3d> chosen(std::span<const Eigen::Vector3d> points,
+                                    const std::vector<bool>& agrees) {
+  std::vector<Eigen::Vector3d> some;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (agrees[i]) some.push_back(points[i]);
+  return some;
+}
+
+double scale_of(const std::vector<double>& distances, double finest) {
+  // Rousseeuw 1984: a median of few is too small.
+  const double few = 1 + 5 / std::max(1.0, double(distances.size()) - 6);
+  return std::max(finest, few * quantile(distances, 0.5) / median_of_one);
+}
+
+// From the bowl to which half of the points are nearest: whatever lies off it, as of a tip in the air, is
+// left out before the sheet bends to it. A sheet with waves it does not find.
+std::optional<std::vector<bool>> near_a_bowl(std::span<const Eigen::Vector3d> points, double finest) {
+  SmoothField height = nearest_to_half(points);
+  std::vector<bool> agrees(points.size(), false);
   for (int round = 0; round < 4; ++round) {
     std::vector<double> distances;
-    for (const Eigen::Vector3d& p : points) distances.push_back(std::abs(off(fit.height, p)));
-    const double scale = std::max(finest, few * quantile(distances, 0.5) / median_of_one);
-    const double allowed = std::max(gate * scale, round == 0 ? bowl_error * depth(fit.height, points) : 0);
-    std::vector<bool> agrees(points.size());
-    std::vector<Eigen::Vector3d> near;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if ((agrees[i] = distances[i] < allowed)) near.push_back(points[i]);
-    const bool settled = agrees == fit.agrees;
-    fit.agrees = std::move(agrees);
+    for (const Eigen::Vector3d& p : points) distances.push_back(std::abs(off(height, p)));
+    const double allowed =
+        std::max(gate * scale_of(distances, finest), round == 0 ? bowl_error * depth(height, points) : 0);
+    std::vector<bool> now(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) now[i] = distances[i] < allowed;
+    const bool settled = now == agrees;
+    agrees = std::move(now);
     if (settled) break;
-    near = thinned(near);
+    const auto near = thinned(chosen(points, agrees));
     if (!spread_out(near)) return std::nullopt;
-    fit.height = sheet_through(near);
-    const SmoothField plane = SmoothField::polynomial(places(near), heights(near), FreeShape::plane);
-    fit.better_than_plane = clearly_smaller(fit.height.left_out_residuals(), plane.left_out_residuals());
-    fit.left_out_rms = std::sqrt(fit.height.left_out_residuals().array().square().mean());
+    height = sheet_through(near);
   }
+  return agrees;
+}
+
+// From all points, of which the worst is left out as long as it stands out from the rest by its studentised
+// residual: waves stay whole, where few points are bad.
+std::vector<bool> without_outliers(std::span<const Eigen::Vector3d> points, double finest) {
+  std::vector<bool> agrees(points.size(), true);
+  for (std::size_t left = points.size(); 4 * left > 3 * points.size(); --left) {
+    const auto used = chosen(points, agrees);
+    const SmoothField height = sheet_through(used);
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      residuals.push_back(
+          std::sqrt(std::abs(off(height, used[i]) * height.left_out_residuals()(Eigen::Index(i), 0))));
+    const auto worst = std::max_element(residuals.begin(), residuals.end());
+    constexpr double stands_out = 6;
+    if (*worst < stands_out * scale_of(residuals, finest)) break;
+    auto number = worst - residuals.begin();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (agrees[i] && number-- == 0) agrees[i] = false;
+  }
+  return agrees;
+}
+
+// Whether the points that were left out lie side by side, as the crests of a wave do and bad touches do not:
+// of the four nearest to each, more than a third are left out too.
+bool side_by_side(std::span<const Eigen::Vector3d> points, const std::vector<bool>& agrees) {
+  constexpr std::size_t neighbours = 4;
+  constexpr double third = 1.0 / 3;
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (agrees[i]) continue;
+    std::vector<std::pair<double, bool>> near;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i) near.emplace_back((points[i] - points[j]).head<2>().norm(), agrees[j]);
+    std::partial_sort(near.begin(), near.begin() + neighbours, near.end());
+    const auto out =
+        std::count_if(near.begin(), near.begin() + neighbours, [](const auto& n) { return !n.second; });
+    shares.push_back(double(out) / neighbours);
+  }
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  return shares.size() > 2 && sum > third * double(shares.size());
+}
+
+SheetFit fit_through(std::span<const Eigen::Vector3d> points, std::vector<bool> agrees) {
+  const auto used = thinned(chosen(points, agrees));
+  SheetFit fit{sheet_through(used), std::move(agrees)};
+  const SmoothField plane = SmoothField::polynomial(places(used), heights(used), FreeShape::plane);
+  fit.better_than_plane = clearly_smaller(fit.height.left_out_residuals(), plane.left_out_residuals());
+  fit.left_out_rms = std::sqrt(fit.height.left_out_residuals().array().square().mean());
   return fit;
+}
+
+}  // namespace
+
+std::vector<Strip> left_out_strips(std::span<const Eigen::Vector3d> points) {
+  const Box box(points);
+  const int across = std::max(3, int(std::sqrt(double(points.size()))));
+  std::vector<Strip> strips;
+  for (const int axis : {0, 1})
+    for (int k = 1; k + 1 < across; ++k) {
+      std::vector<Eigen::Vector3d> inside, others;
+      for (const Eigen::Vector3d& p : points) {
+        const auto [x, y] = box.cell(p, across);
+        ((axis == 0 ? x : y) == k ? inside : others).push_back(p);
+      }
+      if (inside.empty() || others.size() < terms(FreeShape::quadric, 2) + 2) continue;
+      const SmoothField height = bowl_through(others);
+      std::vector<double> errors;
+      Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+      for (const Eigen::Vector3d& p : inside) {
+        errors.push_back(off(height, p));
+        middle += p.head<2>() / double(inside.size());
+      }
+      strips.push_back({axis, middle, root_mean_square(errors)});
+    }
+  return strips;
+}
+
+std::optional<SheetFit> fit_sheet(std::span<const Eigen::Vector3d> points, double finest) {
+  if (!spread_out(points)) return std::nullopt;
+  std::optional<SheetFit> bowl;
+  if (auto agrees = near_a_bowl(points, finest)) bowl = fit_through(points, std::move(*agrees));
+  constexpr std::size_t most_touches = 200;
+  if (points.size() > most_touches) return bowl;
+  SheetFit all = fit_through(points, without_outliers(points, finest));
+  const auto kept = [](const SheetFit& fit) {
+    return std::count(fit.agrees.begin(), fit.agrees.end(), true);
+  };
+  constexpr double as_good = 3;
+  const bool whole = bowl && 4 * kept(*bowl) >= 3 * std::ptrdiff_t(points.size());
+  if (!whole) return all;
+  const bool worse = all.left_out_rms > as_good * bowl->left_out_rms && !side_by_side(points, bowl->agrees);
+  return worse || kept(all) <= kept(*bowl) ? bowl : all;
 }
 
 }  // namespace fude

@@ -23,6 +23,18 @@ struct SheetFit {
 // then only a plane can be told. `finest`: the smallest standard deviation to believe.
 std::optional<SheetFit> fit_sheet(std::span<const Eigen::Vector3d> points, double finest);
 
+// Points side by side that were left out together: how well the rest foretells them says whether the sheet
+// was touched densely enough for its shape.
+struct Strip {
+  int axis = 0;  // 0: the strip stands upright, all its points near one x; 1: near one y
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  double rms = 0;
+};
+
+// The strips between the outermost, as many in each direction as points stand beside one another; those of
+// many points narrower. Each is foretold by the sheet through the others.
+std::vector<Strip> left_out_strips(std::span<const Eigen::Vector3d> points);
+
 // The smooth sheet through points that are all believed: of the free shapes, that which foretells points it
 // has not seen best.
 SmoothField sheet_through(std::span<const Eigen::Vector3d> points);

@@ -52,8 +52,10 @@ class SurfaceProcedure {
 
   // Takes the places where the tip rested; with fewer than six, every sample, of which those that lie on one
   // surface count (wiping). A curved sheet only where it foretells left-out touches better than the plane by
-  // more than chance. Refused: fewer than six places, all on a line, a frozen tracker; more than a quarter of
-  // the touches (of wiping, 70 in 100 samples) off the surface; a residual above 2 mm; corners out of order.
+  // more than chance. Refused: fewer than six places, all on a line, a frozen tracker; more than a fifth of
+  // the touches (of wiping, 70 in 100 samples) off the surface; a residual above 2 mm; corners out of order;
+  // a sheet with more waves than its touches show, and where. Warned of: parts of a curved sheet where the
+  // tip never was.
   Calibration<SurfaceCalibration> finish() const;
 
  private:

@@ -113,6 +113,66 @@ TEST(Surface, ABowedSheetFromTwentyFiveTouches) {
   EXPECT_LT(parabola, 0.25);
 }
 
+// Waves of ±10 mm over A3, of one period and more.
+struct Wave {
+  const char* name;
+  std::function<double(double, double)> height_mm;
+};
+const Wave waves[] = {
+    {"along", [](double x, double) { return 10 * std::sin(2 * std::numbers::pi * x / 420); }},
+    {"steep", [](double x, double) { return 10 * std::sin(2 * std::numbers::pi * x / 280); }},
+    {"across", [](double, double y) { return 10 * std::sin(2 * std::numbers::pi * y / 297); }},
+    {"crossed",
+     [](double x, double y) {
+       return 10 * std::sin(2 * std::numbers::pi * x / 420) * std::cos(std::numbers::pi * y / 297);
+     }},
+    {"oblique", [](double x, double y) { return 10 * std::sin(2 * std::numbers::pi * (x + y) / 400); }},
+};
+
+TEST(Surface, WavesAreFollowedWhereTheyWereTouchedDensely) {
+  constexpr std::uint32_t trials = 6;
+  for (const Wave& wave : waves) {
+    const ScriptedSheet sheet{.height_mm = wave.height_mm, .across = 9, .down = 8};
+    double sum = 0, worst = 0;
+    int refused = 0;
+    for (std::uint32_t seed = 0; seed < trials; ++seed) {
+      const auto found = surface_of(sheet.samples(seed), sheet.tip_m, true);
+      refused += !found;
+      if (!found) continue;
+      const double rms = sheet.rms_against_truth_mm(found->value);
+      EXPECT_TRUE(found->value.sheet);
+      EXPECT_LT(rms, (*found->report.ci95)[1]) << wave.name;
+      sum += rms;
+      worst = std::max(worst, rms);
+    }
+    std::printf(
+        "figure: waves of 10 mm %s, 9 x 8 touches of 0.3 mm: %.3f mm RMS, worst %.3f, %d of %u refused\n",
+        wave.name, sum / std::max(1.0, double(trials) - refused), worst, refused, trials);
+    EXPECT_LE(refused, 1) << wave.name;
+    EXPECT_LT(worst, 0.65) << wave.name;
+  }
+}
+
+TEST(Surface, WavesThatWereTouchedTooSparselyAreRefusedSayingWhere) {
+  int accepted = 0, all = 0;
+  for (const Wave& wave : waves)
+    for (const int across : {5, 6})
+      for (std::uint32_t seed = 0; seed < 4; ++seed, ++all) {
+        const ScriptedSheet sheet{.height_mm = wave.height_mm, .across = across, .down = 5};
+        const auto found = surface_of(sheet.samples(seed), sheet.tip_m, true);
+        accepted += found.has_value();
+        if (found) {  // then it knows how far off it may be
+          EXPECT_LT(sheet.rms_against_truth_mm(found->value), (*found->report.ci95)[1]) << wave.name;
+          EXPECT_FALSE(found->report.warnings.empty()) << wave.name;
+        } else {
+          EXPECT_NE(found.error().reason.find("wav"), std::string::npos) << found.error().reason;
+        }
+      }
+  std::printf("figure: waves of 10 mm, 5 x 5 and 6 x 5 touches: %d of %d accepted, with a warning\n",
+              accepted, all);
+  EXPECT_LE(accepted, all / 10);
+}
+
 TEST(Surface, CornersGiveThePaperItsMillimetres) {
   const ScriptedSheet sheet{.noise_mm = 0};
   const auto found = surface_of(sheet.samples(1), sheet.tip_m, true);
@@ -162,6 +222,27 @@ TEST(Surface, WipingCountsWhatLiesOnTheSheet) {
   ASSERT_TRUE(found) << found.error().reason;
   ASSERT_TRUE(found->value.sheet);
   EXPECT_LT(sheet.rms_against_truth_mm(found->value), 0.25);
+}
+
+TEST(Surface, WhereAWipingTipNeverWasIsNamed) {
+  const ScriptedSheet sheet{.height_mm = bow};
+  Noise noise(5);
+  std::vector<PoseSample> wiped;
+  for (int i = 0; i < 2000; ++i) {
+    const double t = i / 100.0, round = 0.05 + 0.95 * std::abs(std::sin(0.37 * t));
+    wiped.push_back(sheet.holding(sheet.point_m(210 + 205 * round * std::sin(1.7 * t),
+                                                148 + 140 * round * std::cos(1.7 * t), noise.normal(0.3)),
+                                  noise, t));
+  }
+  const auto found = surface_of(wiped, sheet.tip_m);
+  ASSERT_TRUE(found) << found.error().reason;
+  const auto& warnings = found->report.warnings;
+  const auto named = std::ranges::find_if(
+      warnings, [](const std::string& w) { return w.find("the tip never was at") != std::string::npos; });
+  ASSERT_NE(named, warnings.end());
+  for (const char* part : {"lower left", "lower right", "upper left", "upper right"})
+    EXPECT_NE(named->find(part), std::string::npos) << *named;
+  EXPECT_EQ(named->find("middle"), std::string::npos) << *named;
 }
 
 TEST(Surface, ATouchBesideTheSheetIsNamed) {
