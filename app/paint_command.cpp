@@ -8,6 +8,7 @@
 #include "app/painting_options.h"
 #include "app/progress_line.h"
 #include "app/studio/studio.h"
+#include "rig/calibration/calibration_store.h"
 
 namespace fude {
 namespace {
@@ -45,6 +46,10 @@ Result<void> run(const Options& options) {
   auto settings = options.painting.settings(recorded);
   if (!settings) return tl::unexpected(settings.error());
   setup.settings = std::move(*settings);
+  if (options.painting.calibrations.empty() && !setup.played) {
+    std::vector<std::string> unreadable;
+    setup.settings.wish.calibrations = calibrations_of_user(unreadable);
+  }
   if (before) {
     const ProgressLine line("painting what was there");
     auto sheet = painted_sheet(*before, setup.settings, [&](double share) { line.show(share); });

@@ -1,8 +1,7 @@
 #include "rig/calibrated_tablets.h"
 
 #include <algorithm>
-
-#include "rig/calibration_file.h"
+#include <utility>
 
 namespace fude {
 namespace {
@@ -13,17 +12,16 @@ bool is_of_a_tablet(const StoredCalibration& calibration) {
 
 }  // namespace
 
-Result<std::vector<CalibratedTablet>> calibrated_tablets(const std::vector<RecordedCalibration>& carried) {
+Result<std::vector<CalibratedTablet>> calibrated_tablets(const std::vector<StoredCalibration>& calibrations) {
   std::vector<CalibratedTablet> tablets;
-  for (const RecordedCalibration& recorded : carried) {
-    const auto calibration = calibration_from_toml(recorded.toml, recorded.name);
-    if (!calibration || !is_of_a_tablet(*calibration)) continue;
-    auto surface = tablet_surface_from(calibration->result);
+  for (const StoredCalibration& calibration : calibrations) {
+    if (!is_of_a_tablet(calibration)) continue;
+    auto surface = tablet_surface_from(calibration.result);
     if (!surface)
-      return failure(Fault::malformed, "the calibration '" + recorded.name +
-                                           "' of a tablet lacks a part; name a whole one with --cal");
+      return failure(Fault::malformed, "the calibration of the " + calibration.report.from_frame +
+                                           " lacks a part; name a whole one with --cal");
     tablets.push_back(
-        {calibration->report.devices, std::make_shared<const TabletSurface>(std::move(*surface))});
+        {calibration.report.devices, std::make_shared<const TabletSurface>(std::move(*surface))});
   }
   return tablets;
 }
@@ -41,15 +39,15 @@ std::optional<Extent> area_of(const std::vector<CalibratedTablet>& tablets, cons
   return active_area(device);
 }
 
-Result<RecordedCalibration> tablet_calibration(const std::filesystem::path& file) {
-  const auto calibration = read_calibration(file);
+Result<StoredCalibration> tablet_calibration(const std::filesystem::path& file) {
+  auto calibration = read_calibration(file);
   if (!calibration) return tl::unexpected(calibration.error());
   if (!is_of_a_tablet(*calibration) || !tablet_surface_from(calibration->result))
     return failure(Fault::usage,
                    file.string() +
                        " is not the calibration of a tablet; make one with fude calibrate surface "
                        "SESSION --taps 5x5 --sheet-mm WxH");
-  return RecordedCalibration{"surface", toml_of(*calibration)};
+  return calibration;
 }
 
 }  // namespace fude

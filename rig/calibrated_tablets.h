@@ -8,7 +8,7 @@
 
 #include "calibration/pen_mapping.h"
 #include "calibration/tablet_surface.h"
-#include "capture/session.h"
+#include "rig/calibration_file.h"
 #include "signal/device.h"
 #include "signal/result.h"
 
@@ -19,9 +19,8 @@ struct CalibratedTablet {
   std::shared_ptr<const TabletSurface> surface;
 };
 
-// Of all calibrations that a session carries those of tablets, in their order; what else it carries is passed
-// over. Errors: malformed where one of a tablet lacks a part.
-Result<std::vector<CalibratedTablet>> calibrated_tablets(const std::vector<RecordedCalibration>& carried);
+// Of all calibrations those of tablets, in their order. Errors: malformed where one of them lacks a part.
+Result<std::vector<CalibratedTablet>> calibrated_tablets(const std::vector<StoredCalibration>& calibrations);
 
 // The last that was made with the device. Null: it was not calibrated.
 std::shared_ptr<const TabletSurface> surface_of(const std::vector<CalibratedTablet>& tablets,
@@ -30,8 +29,7 @@ std::shared_ptr<const TabletSurface> surface_of(const std::vector<CalibratedTabl
 // The sheet that was calibrated, else the active area; none where neither is known.
 std::optional<Extent> area_of(const std::vector<CalibratedTablet>& tablets, const DeviceDescription& device);
 
-// A calibration to paint with, as the session will carry it. Errors: those of read_calibration; usage where
-// it is not one of a tablet.
-Result<RecordedCalibration> tablet_calibration(const std::filesystem::path& file);
+// A calibration to paint with. Errors: those of read_calibration; usage where it is not one of a tablet.
+Result<StoredCalibration> tablet_calibration(const std::filesystem::path& file);
 
 }  // namespace fude

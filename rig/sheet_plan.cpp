@@ -44,7 +44,10 @@ Result<TabletMapping> mapping_on(const SheetPlan& plan, const DeviceDescription&
 
 Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
   SheetPlan plan;
-  std::vector<RecordedCalibration> calibrations = session.calibrations;
+  std::vector<StoredCalibration> calibrations;
+  for (const RecordedCalibration& carried : session.calibrations)
+    if (auto calibration = calibration_from_toml(carried.toml, carried.name))
+      calibrations.push_back(std::move(*calibration));
   calibrations.insert(calibrations.end(), wish.calibrations.begin(), wish.calibrations.end());
   auto calibrated = calibrated_tablets(calibrations);
   if (!calibrated) return tl::unexpected(calibrated.error());

@@ -18,9 +18,10 @@ struct SheetPlan {
 };
 
 struct SheetWish {
-  std::optional<Extent> sheet;                    // --size-mm
-  std::optional<Extent> tablet;                   // --tablet-mm, for devices that do not state a size
-  std::vector<RecordedCalibration> calibrations;  // --cal, before those that the session carries
+  std::optional<Extent> sheet;   // --size-mm
+  std::optional<Extent> tablet;  // --tablet-mm, for devices that do not state a size
+  // Named or kept: before those that the session carries.
+  std::vector<StoredCalibration> calibrations;
 };
 
 // Without a wish the sheet is the largest active area of the devices that sent samples; of one that was

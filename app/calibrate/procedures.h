@@ -18,6 +18,7 @@ void add_calibrate_imu(CLI::App& calibrate, int& status);
 void add_calibrate_imu_axes(CLI::App& calibrate, int& status);
 void add_calibrate_list(CLI::App& calibrate, int& status);
 void add_calibrate_pivot(CLI::App& calibrate, int& status);
+void add_calibrate_pressure(CLI::App& calibrate, int& status);
 void add_calibrate_rollback(CLI::App& calibrate, int& status);
 void add_calibrate_surface(CLI::App& calibrate, int& status);
 void add_calibrate_target(CLI::App& calibrate, int& status);

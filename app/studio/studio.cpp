@@ -15,6 +15,7 @@
 #include "app/studio/tuft_drawing.h"
 #include "app/studio/view.h"
 #include "app/studio/window.h"
+#include "rig/calibration/passport.h"
 #include "rig/devices.h"
 #include "rig/live_painting.h"
 #include "rig/session_summary.h"
@@ -60,11 +61,14 @@ class Studio {
         rows_(painting.ink().rows()),
         step_ms_(painting.step_s() * 1e3),
         mouse_{.sheet = plan.sheet},
+        passport_(setup.settings.wish.calibrations),
         live_(std::move(painting), setup.settings.reach, recorder) {
     if (setup.played)
       for (const RecordedDevice& device : setup.played->devices) {
         numbers_[device.number] = ++devices_;
-        if (recorder) recorder->add(device.description);
+        if (!recorder) continue;
+        for (const RecordedCalibration& own : passport_.begin(device.description)) recorder->add(own);
+        recorder->add(device.description);
       }
     const DeviceDescription mouse = mouse_description(plan.sheet);
     mouse_device_ = ++devices_;
@@ -122,7 +126,10 @@ class Studio {
     listener.appeared = [this, recorder](std::size_t, const DeviceDescription& description) {
       const auto mapping = mapping_on(plan_, description);
       const std::lock_guard lock(tablets_mutex_);
-      if (recorder) recorder->add(description);
+      if (recorder) {
+        for (const RecordedCalibration& own : passport_.begin(description)) recorder->add(own);
+        recorder->add(description);
+      }
       known_tablets_.push_back({++devices_, mapping ? std::optional(*mapping) : std::nullopt, false});
       if (!mapping) notice_ = mapping.error().message;
     };
@@ -313,6 +320,7 @@ class Studio {
   std::map<DeviceNumber, DeviceNumber> numbers_;  // of the played session's devices, here
   DeviceNumber devices_ = 0;
   DeviceNumber mouse_device_ = 0;
+  Passport passport_;  // of the calibrations that were named or are kept
   LivePainting live_;
   std::mutex tablets_mutex_;
   std::vector<KnownTablet> known_tablets_;
@@ -365,7 +373,6 @@ Result<void> run_studio(const StudioSetup& setup) {
     if (setup.sheet) recorder->add(RecordedSheet{0, as_bytes(*setup.sheet)});
     if (setup.played)
       for (const RecordedCalibration& carried : setup.played->calibrations) recorder->add(carried);
-    for (const RecordedCalibration& named : wish.calibrations) recorder->add(named);
   }
   Studio studio(setup, *plan, std::move(*painting), recorder.get());
   if (auto done = studio.run(); !done) return done;

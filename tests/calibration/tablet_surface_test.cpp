@@ -99,7 +99,7 @@ Trials trials(const ScriptedTablet& tablet, int across, int down, int count) {
 }
 
 TEST(TabletSurface, NineAndTwentyFiveTapsOfATenthOfAMillimetre) {
-  const Trials nine = trials({}, 3, 3, 20), many = trials({}, 5, 5, 10);
+  const Trials nine = trials({}, 3, 3, 20), many = trials({}, 5, 5, 6);
   std::printf("figure: tablet, 9 taps of 0.1 mm: %.3f mm RMS against the truth (held out %.3f)\n", nine.rms,
               nine.held_out);
   std::printf("figure: tablet, 25 taps of 0.1 mm: %.3f mm RMS against the truth (held out %.3f)\n", many.rms,
@@ -110,11 +110,11 @@ TEST(TabletSurface, NineAndTwentyFiveTapsOfATenthOfAMillimetre) {
 }
 
 TEST(TabletSurface, ABentScreenGetsAWarp) {
-  const Trials bent = trials({.bend_mm = 2}, 5, 5, 8);
+  const Trials bent = trials({.bend_mm = 2}, 5, 5, 5);
   std::printf(
       "figure: bent tablet (2 mm), 25 taps of 0.1 mm: %.3f mm RMS against the truth (held out %.3f)\n",
       bent.rms, bent.held_out);
-  EXPECT_EQ(bent.bent, 8);
+  EXPECT_EQ(bent.bent, 5);
   EXPECT_LT(bent.rms, 0.25);
 }
 

@@ -87,6 +87,8 @@ TEST(Replay, IsTheSamePictureInEveryBuild) {
   s.settle.seconds = 1;
   EXPECT_EQ(painted(gesture::session(150, 2), s).picture_sha256,
             "dfc442863a385213cf2b1409bb733f3be4f41e500dfd5f0dd5bf1acad3d86df2");
+  EXPECT_EQ(painted(gesture::calibrated(gesture::session(150, 2)), s).picture_sha256,
+            "a3ffb09a614241d6ede5e0635e9223872d2f7f8940246dbb027f20f59b157e54");
 }
 
 TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {

@@ -81,19 +81,20 @@ TEST(SheetPlan, AHugeSheetIsRefused) {
 }
 
 // Of a sheet of 180 × 90 mm, whose left edge lies on x = `left_counts`.
-RecordedCalibration taps_on(const std::string& device, double left_counts) {
+StoredCalibration taps_on(const std::string& device, double left_counts) {
   TabletSurface surface;
   surface.mm_from_counts << 0.005, 0, -0.005 * left_counts, 0, -0.005, 90, 0, 0, 1;
   surface.width_mm = 180;
   surface.height_mm = 90;
-  const CalibrationReport report{.procedure = "surface", .accepted = true, .devices = {device}};
-  return {"surface", toml_of({to_fields(surface), report})};
+  return {to_fields(surface), {.procedure = "surface", .accepted = true, .devices = {device}}};
 }
 
 Session calibrated_tablet() {
   Session s = tablet();
   s.devices[0].description.id = "056a:0001:A";
-  s.calibrations = {taps_on("056a:0001:A", 1000), taps_on("056a:0001:B", 3000), {"other", "rpm = 3"}};
+  for (const auto& calibration : {taps_on("056a:0001:A", 1000), taps_on("056a:0001:B", 3000)})
+    s.calibrations.push_back({"surface", toml_of(calibration)});
+  s.calibrations.push_back({"other", "rpm = 3"});
   return s;
 }
 
