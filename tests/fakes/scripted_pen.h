@@ -28,7 +28,7 @@ inline void tap(std::vector<PenSample>& samples, const PenSample& at) {
     t += 0.01;
     PenSample sample = at;
     const bool touches = i >= 10 && i < 40;
-    sample.time.host = pen_sample(t, {}, false).time.host;
+    sample.time.host = pen_sample(t, Eigen::Vector2d::Zero(), false).time.host;
     sample.in_contact = touches;
     if (!touches) sample.pressure = Fraction(0);
     samples.push_back(sample);
