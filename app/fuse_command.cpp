@@ -4,10 +4,12 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/commands.h"
+#include "app/numbers_option.h"
 #include "capture/session.h"
 #include "rig/fusion/fuse_session.h"
 #include "rig/fusion/fuse_sources.h"
@@ -19,7 +21,7 @@ namespace {
 
 struct Options {
   std::string session, out, into, use;
-  std::vector<double> up;  // empty: by gravity
+  std::optional<Eigen::Vector3d> up;  // none: by gravity
   std::vector<std::string> calibrations;
   bool smooth = false, force = false;
 };
@@ -48,8 +50,8 @@ void tell(const FusedSession& fused) {
 
 Result<FuseWish> wish_of(const Options& options) {
   FuseWish wish{.smooth = options.smooth};
-  if (!options.up.empty()) {
-    wish.up = Eigen::Vector3d(options.up.data());
+  if (options.up) {
+    wish.up = options.up;
     if (!(wish.up->norm() > 1e-6)) return failure(Fault::usage, "--up is no direction");
   }
   if (!options.use.empty()) {
@@ -126,11 +128,9 @@ void add_fuse(CLI::App& app, int& status) {
                    "a calibration beside those that the session carries (may be given several times)")
       ->take_all()
       ->expected(1);
-  command
-      ->add_option("--up", options->up,
-                   "the direction of up in the tracker's frame; without it as gravity has it")
-      ->expected(3)
-      ->delimiter(',');
+  add_numbers_option(*command, "--up",
+                     "x,y,z: the direction of up in the tracker's frame; without it as gravity has it",
+                     [options = options.get()](const Eigen::Vector3d& up) { options->up = up; });
   command->add_flag("--smooth", options->smooth, "from the samples after each moment too: for the archive");
   command->add_flag("--force", options->force, "replace existing files");
   command->callback([options, &status] {

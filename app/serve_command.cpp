@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/numbers_option.h"
 #include "drivers/transport/waker.h"
 #include "rig/named_device.h"
 #include "rig/pose_relay.h"
@@ -19,7 +20,7 @@ struct Options {
   PoseServers::Doors doors;
   std::vector<std::string> named;
   bool fuse = false;
-  std::vector<double> up{0, 0, 1};
+  Eigen::Vector3d up{0, 0, 1};
   double predict_ms = 0;
   double seconds = 0;  // 0: until Ctrl-C
 };
@@ -28,7 +29,7 @@ int serve(const Options& options) {
   InterruptWatch interrupt;  // before any thread starts
   PoseRelay::Wish wish{.doors = options.doors, .named = {}, .fused_with_up = std::nullopt, .fused_ahead = {}};
   if (options.fuse) {
-    wish.fused_with_up = Eigen::Vector3d(options.up.data());
+    wish.fused_with_up = options.up;
     wish.fused_ahead =
         std::chrono::round<Duration>(std::chrono::duration<double, std::milli>(options.predict_ms));
     if (!(wish.fused_with_up->norm() > 0)) return report({Fault::usage, "--up needs a direction, as 0,0,1"});
@@ -73,9 +74,8 @@ void add_serve(CLI::App& app, int& status) {
                       "openigtlink:HOST:PORT, vrpn:HOST …; may be given again");
   command->add_flag("--fuse", options->fuse,
                     "the first tool together with the first inertial unit, as one more tool: fused");
-  command->add_option("--up", options->up, "x,y,z of up in the tracker's frame, for --fuse")
-      ->delimiter(',')
-      ->expected(3);
+  add_numbers_option(*command, "--up", "x,y,z of up in the tracker's frame, for --fuse; 0,0,1 without",
+                     [options = options.get()](const Eigen::Vector3d& up) { options->up = up; });
   command
       ->add_option("--predict-ms", options->predict_ms,
                    "the fused tool so much ahead of its time, as it moves now: for a display, not to be kept")

@@ -8,6 +8,7 @@
 #include "app/calibrate/board_options.h"
 #include "app/calibrate/procedure_command.h"
 #include "app/calibrate/procedures.h"
+#include "app/numbers_option.h"
 #include "rig/calibration/camera_pose.h"
 
 namespace fude {

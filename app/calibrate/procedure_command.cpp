@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/enter_key.h"
 #include "app/interrupt.h"
+#include "app/numbers_option.h"
 #include "app/progress_line.h"
 #include "rig/calibration/calibrate_session.h"
 #include "rig/calibration/calibration_store.h"
@@ -162,22 +163,6 @@ CLI::App* add_procedure(CLI::App& calibrate, int& status, Procedure procedure) {
 void add_tool_options(CLI::App& command, ToolWish& wish) {
   command.add_option("--tool", wish.tool, "the tool of the tracker, where it has several");
   command.add_option("--reference", wish.reference, "the tool that stands for the tracker's frame");
-}
-
-// As one word: CLI11 would take what follows for more numbers.
-CLI::Option* add_numbers_option(CLI::App& command, const std::string& name, const std::string& meaning,
-                                std::function<void(const Eigen::Vector3d&)> take) {
-  return command.add_option_function<std::string>(
-      name,
-      [name, take = std::move(take)](const std::string& text) {
-        Eigen::Vector3d v;
-        int length = 0;
-        if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v.x(), &v.y(), &v.z(), &length) != 3 ||
-            text[std::size_t(length)] != '\0' || !v.allFinite())
-          throw CLI::ValidationError(name, "give three numbers, as 0.5,-12,150");
-        take(v);
-      },
-      meaning);
 }
 
 void add_tip_option(CLI::App& command, std::optional<Eigen::Vector3d>& tip_m) {

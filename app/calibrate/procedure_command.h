@@ -35,10 +35,6 @@ CLI::App* add_procedure(CLI::App& calibrate, int& status, Procedure procedure);
 // --tool and --reference.
 void add_tool_options(CLI::App& command, ToolWish& wish);
 
-// An option of three numbers with commas between them.
-CLI::Option* add_numbers_option(CLI::App& command, const std::string& name, const std::string& meaning,
-                                std::function<void(const Eigen::Vector3d&)> take);
-
 // --tip-mm.
 void add_tip_option(CLI::App& command, std::optional<Eigen::Vector3d>& tip_m);
 
