@@ -107,7 +107,7 @@ TEST(FoundBoard, ThatGoesOnBeyondWhatWasNamedSaysSo) {
     ++parts;
     EXPECT_TRUE(part->goes_on);
   }
-  if (parts == 0) GTEST_SKIP() << "skipped: this OpenCV finds no part of a larger board";
+  EXPECT_GT(parts, 0) << "no part of the larger board was found in any view";
 }
 
 TEST(CameraPose, APictureTakenElsewhereIsNamed) {
