@@ -38,16 +38,16 @@ Result<void> paint_into_picture(const Session& session, const ReplaySettings& se
   return {};
 }
 
-Result<void> run(const PaintingOptions& options) {
-  const auto file = find_shared("sessions", "yong", ".fude");
+Result<void> run(const std::string& name, const PaintingOptions& options) {
+  const auto file = find_shared("sessions", name, ".fude");
   if (!file) return tl::unexpected(file.error());
   const auto session = read_session(*file);
   if (!session) return tl::unexpected(session.error());
   const auto settings = options.settings(session->settings);
   if (!settings) return tl::unexpected(settings.error());
 #ifdef FUDE_WINDOW
-  const auto is_set = [](const char* name) {
-    const char* value = std::getenv(name);
+  const auto is_set = [](const char* variable) {
+    const char* value = std::getenv(variable);
     return value && *value;
   };
   if (is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"))
@@ -60,13 +60,16 @@ Result<void> run(const PaintingOptions& options) {
 
 void add_demo(CLI::App& app, int& status) {
   auto options = std::make_shared<PaintingOptions>();
+  auto name = std::make_shared<std::string>("yong");
   options->settle = "4";
-  CLI::App* command = app.add_subcommand("demo",
-                                         "paints a recorded 永: in a window where there is a display, else "
-                                         "into a picture");
+  CLI::App* command =
+      app.add_subcommand("demo",
+                         "paints a recorded performance: in a window where there is a display, "
+                         "else into a picture");
+  command->add_option("NAME", *name, "yong: 永, or bamboo");
   options->add_to(*command);
-  command->callback([options, &status] {
-    if (const auto done = run(*options); !done) status = report(done.error());
+  command->callback([name, options, &status] {
+    if (const auto done = run(*name, *options); !done) status = report(done.error());
   });
 }
 

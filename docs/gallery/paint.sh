@@ -15,6 +15,7 @@ paint() { # SESSION PICTURE OPTIONS…
 }
 
 paint "$root/share/sessions/yong.fude" yong.png --settle 4
+paint "$root/share/sessions/bamboo.fude" bamboo.png --settle 6 --cell-mm 0.2
 "$fude" perform turns --out "$work/turns.fude"
 paint "$work/turns.fude" turns.png --flow off
 for brush in "$here"/brushes/*.toml; do

@@ -24,10 +24,12 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Performance yong() {
-  const auto file = find_shared("performances", "yong", ".toml").value();
+Performance bundled(const std::string& name) {
+  const auto file = find_shared("performances", name, ".toml").value();
   return read_performance(text_of(file), file.string()).value();
 }
+
+Performance yong() { return bundled("yong"); }
 
 // Through the real decoding, as `fude perform` writes it.
 Session session_of(const Performance& performance) {
@@ -104,6 +106,20 @@ TEST(Performance, WhatIsDecodedIsWhatWasWritten) {
   EXPECT_NEAR(highest, written, 0.01);
   ASSERT_TRUE(session.pens[200].sample.tilt_x.has_value());
   EXPECT_NEAR(in_degrees(*session.pens[200].sample.tilt_x), in_degrees(script.strokes[0].tilt_x), 1);
+}
+
+TEST(Performance, BundledSessionsAreTheirPerformances) {
+  for (const char* name : {"yong", "bamboo"}) {
+    SCOPED_TRACE(name);
+    const Session written = session_of(bundled(name));
+    const Session kept = read_session(find_shared("sessions", name, ".fude").value()).value();
+    ASSERT_EQ(kept.pens.size(), written.pens.size());
+    for (std::size_t i = 0; i < kept.pens.size(); ++i)
+      ASSERT_EQ(kept.pens[i].sample, written.pens[i].sample) << i;
+    ASSERT_EQ(kept.actions.size(), written.actions.size());
+    for (std::size_t i = 0; i < kept.actions.size(); ++i)
+      ASSERT_EQ(kept.actions[i].action, written.actions[i].action) << i;
+  }
 }
 
 // Written at 60 mm to the em, the character covers its printed outline.
