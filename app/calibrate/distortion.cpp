@@ -12,8 +12,10 @@ void add_calibrate_distortion(CLI::App& calibrate, int& status) {
   auto wish = std::make_shared<DistortionWish>();
   CLI::App* command = add_procedure(
       calibrate, status,
-      {"distortion", "how iron bends what a magnetic tracker says, through the volume that was mapped",
-       [wish](KnownCalibrations known) { return distortion_calibrator(*wish, std::move(known)); }});
+      {.name = "distortion",
+       .finds = "how iron bends what a magnetic tracker says, through the volume that was mapped",
+       .make = [wish](KnownCalibrations known) { return distortion_calibrator(*wish, std::move(known)); },
+       .undistorted = false});
   command->add_option("--tool", wish->tool, "the tool of the magnetic tracker, where there are several");
   command->add_option("--other", wish->other, "the same motion as a tracker saw it that no iron disturbs");
   command->add_option("--landmarks", wish->grid,

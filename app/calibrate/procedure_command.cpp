@@ -15,6 +15,7 @@
 #include "rig/calibration/calibrate_session.h"
 #include "rig/calibration/calibration_store.h"
 #include "rig/calibration/live_calibration.h"
+#include "rig/calibration/undistortion.h"
 #include "rig/named_device.h"
 
 namespace fude {
@@ -45,6 +46,13 @@ Result<KnownCalibrations> known_beside(const Options& options) {
   return known;
 }
 
+Result<std::unique_ptr<Calibrator>> calibrator_of(const Procedure& procedure, KnownCalibrations known) {
+  if (!procedure.undistorted) return procedure.make(std::move(known));
+  auto calibrator = procedure.make(known);
+  if (!calibrator) return calibrator;
+  return undistorted(std::move(*calibrator), std::move(known));
+}
+
 Result<CalibrationOutcome> hear_session(const Procedure& procedure, const Options& options) {
   const bool needs_session = !procedure.needs_session || procedure.needs_session();
   if (needs_session && options.session.empty())
@@ -55,7 +63,7 @@ Result<CalibrationOutcome> hear_session(const Procedure& procedure, const Option
   const auto session = options.session.empty() ? Result<Session>(Session{}) : read_session(options.session);
   if (!session) return tl::unexpected(session.error());
   known->carry(*session);
-  const auto calibrator = procedure.make(std::move(*known));
+  const auto calibrator = calibrator_of(procedure, std::move(*known));
   if (!calibrator) return tl::unexpected(calibrator.error());
   const ProgressLine line("calibrating");
   return calibrate_session(**calibrator, *session,
@@ -85,7 +93,7 @@ Result<CalibrationOutcome> hear_devices(const Procedure& procedure, const Option
   }
   auto known = known_beside(options);
   if (!known) return tl::unexpected(known.error());
-  const auto calibrator = procedure.make(std::move(*known));
+  const auto calibrator = calibrator_of(procedure, std::move(*known));
   if (!calibrator) return tl::unexpected(calibrator.error());
   const auto live = LiveCalibration::start(**calibrator, std::move(wish), tell);
   if (!live) return tl::unexpected(live.error());

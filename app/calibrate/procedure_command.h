@@ -26,6 +26,7 @@ struct Procedure {
   std::function<Result<std::unique_ptr<Calibrator>>(KnownCalibrations)> make;
   std::function<bool()> needs_session = {};  // empty: always
   bool kept = true;                          // what it finds is for later, and not of this moment
+  bool undistorted = true;                   // poses are put right by the distortion that is known
 };
 
 // A command of that name with SESSION, --cal, --out, --report, --json and --force; running it makes the

@@ -40,7 +40,7 @@ class MappedByMotion final : public Calibrator {
   Result<CalibrationOutcome> finish() override {
     if (const auto found = tools_.found(); !found) return tl::unexpected(found.error());
     auto outcome = mapped(places_of_motion(magnetic_, undisturbed_));
-    tools_.sign(outcome.report);
+    tools_.sign_tracker(outcome.report);
     return outcome;
   }
 
@@ -90,7 +90,7 @@ class MappedByGrid final : public Calibrator {
       outcome.report.n = touches.size();
       outcome.report.reason = std::to_string(touches.size()) + " points were touched, but " +
                               std::to_string(grid_.size()) + " are listed";
-      poses_.sign_tool(outcome.report);
+      poses_.sign_frame(outcome.report);
       return outcome;
     }
     std::vector<Pose<Tracker, Tool>> touched;
@@ -99,7 +99,7 @@ class MappedByGrid final : public Calibrator {
       touched.push_back({rotation, touch.point_m - rotation * *tip_m_});
     }
     auto outcome = mapped(places_of_grid(touched, *tip_m_, grid_));
-    poses_.sign_tool(outcome.report);
+    poses_.sign_frame(outcome.report);
     return outcome;
   }
 

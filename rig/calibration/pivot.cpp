@@ -1,16 +1,19 @@
 #include "rig/calibration/pivot.h"
 
 #include <utility>
+#include <variant>
 
 #include "calibration/pivot.h"
 #include "rig/calibration/session_inputs.h"
+#include "rig/calibration/undistortion.h"
 
 namespace fude {
 namespace {
 
 class PivotCalibrator final : public Calibrator {
  public:
-  explicit PivotCalibrator(PivotWish wish) : wish_(std::move(wish)), poses_(wish_.tool) {}
+  PivotCalibrator(PivotWish wish, KnownCalibrations known)
+      : wish_(std::move(wish)), known_(std::move(known)), poses_(wish_.tool) {}
 
   void begin(DeviceNumber device, const DeviceDescription& description) override {
     poses_.begin(device, description);
@@ -41,16 +44,23 @@ class PivotCalibrator final : public Calibrator {
     if (!session) return tl::unexpected(session.error());
     procedure_.begin_spin();
     ToolPoses poses(wish_.tool);
-    for (const RecordedDevice& device : session->devices) poses.begin(device.number, device.description);
+    Undistortion undistortion(known_);
+    for (const RecordedDevice& device : session->devices) {
+      poses.begin(device.number, device.description);
+      undistortion.begin(device.number, device.description);
+    }
     auto heard = for_each_input(
         *session, [&](DeviceNumber device, const Sample& sample, const Transfer*) -> Result<void> {
-          return add(poses.hear(device, sample)).map([](const Progress&) {});
+          const auto* pose = std::get_if<PoseSample>(&sample);
+          if (pose == nullptr) return {};
+          return add(poses.hear(device, undistortion.straight(device, *pose))).map([](const Progress&) {});
         });
     if (!heard) return heard;
     return add(poses.rest()).map([](const Progress&) {});
   }
 
   PivotWish wish_;
+  KnownCalibrations known_;
   ToolPoses poses_;
   PivotProcedure procedure_;
   Progress progress_;
@@ -58,8 +68,8 @@ class PivotCalibrator final : public Calibrator {
 
 }  // namespace
 
-std::unique_ptr<Calibrator> pivot_calibrator(PivotWish wish) {
-  return std::make_unique<PivotCalibrator>(std::move(wish));
+std::unique_ptr<Calibrator> pivot_calibrator(PivotWish wish, KnownCalibrations known) {
+  return std::make_unique<PivotCalibrator>(std::move(wish), std::move(known));
 }
 
 }  // namespace fude

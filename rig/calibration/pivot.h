@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "rig/calibration/calibrator.h"
+#include "rig/calibration/known_calibrations.h"
 #include "rig/calibration/tool_poses.h"
 
 namespace fude {
@@ -15,7 +16,7 @@ struct PivotWish {
   std::optional<std::filesystem::path> spin;  // a session in which the handle is spun about itself
 };
 
-// finish() also has the errors of reading `spin`.
-std::unique_ptr<Calibrator> pivot_calibrator(PivotWish wish);
+// finish() also has the errors of reading `spin`, whose poses are put right by the distortion that is known.
+std::unique_ptr<Calibrator> pivot_calibrator(PivotWish wish, KnownCalibrations known = {});
 
 }  // namespace fude

@@ -34,4 +34,10 @@ void TwoTools::sign(CalibrationReport& report) const {
   report.tool = tool_.chosen()->part;
 }
 
+void TwoTools::sign_tracker(CalibrationReport& report) const {
+  if (!tool_.chosen() || !other_.chosen()) return;
+  report.devices = {tool_.chosen()->device.id};
+  if (other_.chosen()->number == tool_.chosen()->number) report.tool = tool_.chosen()->part;
+}
+
 }  // namespace fude

@@ -26,8 +26,10 @@ class TwoTools {
   // Errors: not_found where one of them was never heard.
   Result<void> found() const;
 
-  // Whose the result is: of the tool, and made with both devices.
+  // Whose the result is: of the tool, and made with both devices; or of the tool's tracker alone, whatever it
+  // sees, unless the same one sees the other tool too.
   void sign(CalibrationReport& report) const;
+  void sign_tracker(CalibrationReport& report) const;
 
  private:
   StreamChoice tool_, other_;

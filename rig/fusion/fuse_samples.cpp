@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/ultrasonic/multilateration.h"
+#include "rig/calibration/session_inputs.h"
 #include "rig/fusion/fix_of.h"
 #include "rig/fusion/keep_fused.h"
 
@@ -42,13 +43,11 @@ UsableSamples::UsableSamples(const Session& session, const FuseCalibration& cali
     truth_[device.number] = is_truth(device.description);
     if (device.description.id == fused_device_id) fused.insert(device.number);
   }
-  for (const RecordedSample& sample : session.samples)
-    if (!fused.contains(sample.device))
-      std::visit([&](const auto& s) { take(sample.device, s); }, sample.sample);
-  if (!calibration.geometry.tip_m) return;
-  const ContactFix contact{.tip_offset_m = *calibration.geometry.tip_m, .sheet = calibration.sheet};
-  for (const RecordedPen& pen : session.pens)
-    if (pen.sample.in_contact) keep(FuseSource::contact, times_of(pen.device, "", pen.sample.time), contact);
+  const auto take_input = [&](DeviceNumber device, const Sample& sample, const Transfer*) -> Result<void> {
+    if (!fused.contains(device)) std::visit([&](const auto& s) { take(device, s); }, sample);
+    return {};
+  };
+  static_cast<void>(for_each_input(session, take_input));  // take_input has no errors
 }
 
 std::vector<UsableSample> UsableSamples::of(const std::set<FuseSource>& use) const {
@@ -67,6 +66,12 @@ void UsableSamples::keep(FuseSource source, const Times& times, const Fix& fix) 
 UsableSamples::Times UsableSamples::times_of(DeviceNumber device, const std::string& part,
                                              const SampleTime& time) const {
   return {time.host + calibration_.delay_of(device, part, time.host), time.host};
+}
+
+void UsableSamples::take(DeviceNumber device, const PenSample& sample) {
+  if (!calibration_.geometry.tip_m || !sample.in_contact) return;
+  keep(FuseSource::contact, times_of(device, "", sample.time),
+       ContactFix{.tip_offset_m = *calibration_.geometry.tip_m, .sheet = calibration_.sheet});
 }
 
 void UsableSamples::take(DeviceNumber device, const ImuSample& sample) {

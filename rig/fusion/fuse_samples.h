@@ -47,6 +47,7 @@ class UsableSamples {
     Timestamp time{}, stamped{};
   };
   void keep(FuseSource source, const Times& times, const Fix& fix);
+  void take(DeviceNumber device, const PenSample& sample);
   void take(DeviceNumber device, const ImuSample& sample);
   void take(DeviceNumber device, const PoseSample& sample);
   void take(DeviceNumber device, const PositionSample& sample);
