@@ -22,6 +22,7 @@ struct CoverageFrame {
   int columns() const { return words * cells_per_word; }
   double left_mm() const { return static_cast<double>(first_word * cells_per_word) * cell_mm; }
   double bottom_mm() const { return static_cast<double>(first_row) * cell_mm; }
+  bool operator==(const CoverageFrame&) const = default;
 };
 CoverageFrame frame_around(const Eigen::Vector2d& low_mm, const Eigen::Vector2d& high_mm, double cell_mm);
 
@@ -42,24 +43,39 @@ class Coverage {
   void add(const Coverage& other);
   // Adds what is in `other` and not in `except`. All over one frame.
   void add_new(const Coverage& other, const Coverage& except);
+  // Adds `amount` to each cell of a raster over the frame, times the share of it that is covered.
+  void add_shares(float amount, std::vector<float>& cells) const;
 
-  bool any(int row, int word) const {
-    return (line(row, 0, word) | line(row, 1, word) | line(row, 2, word) | line(row, 3, word)) != 0;
-  }
+  bool any(int row, int word) const { return columns(row, word) != 0; }
   bool whole(int row, int word) const {
-    return ~(line(row, 0, word) & line(row, 1, word) & line(row, 2, word) & line(row, 3, word)) == 0;
+    const std::uint64_t* w = lines(row, word);
+    return ~(w[0] & w[1] & w[2] & w[3]) == 0;
+  }
+  // A bit for each column of samples in which one of a row of cells is covered, lowest x first.
+  std::uint64_t columns(int row, int word) const {
+    const std::uint64_t* w = lines(row, word);
+    return w[0] | w[1] | w[2] | w[3];
   }
   // A bit for each of the 16 cells that holds a sample, lowest x first.
   std::uint64_t cells(int row, int word) const;
   void count_samples(int row, int word, SampleCounts& counts) const;
 
+  // A step from one coverage to the next, `passed` on the way: adds what is new to `fresh` and all to
+  // `touched`, and empties `passed`. All over one frame.
+  struct Step {
+    const Coverage& before;
+    const Coverage& after;
+  };
+  friend void add_step(const Step& step, Coverage& passed, Coverage& fresh, Coverage& touched);
+
  private:
-  std::uint64_t line(int row, int sample, int word) const {
-    return bits_[static_cast<std::size_t>((row * samples_per_side + sample) * frame_.words + word)];
+  // The four rows of samples of 16 cells.
+  const std::uint64_t* lines(int row, int word) const {
+    return bits_.data() + static_cast<std::ptrdiff_t>(row * frame_.words + word) * samples_per_side;
   }
 
   CoverageFrame frame_;
-  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint64_t> bits_;  // rows of cells, words of a row, samples of a word
   std::vector<std::uint64_t> moved_;
 };
 

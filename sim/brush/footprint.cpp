@@ -13,25 +13,6 @@ using Eigen::Vector2d;
 constexpr double sweep_step_mm = 0.4;
 constexpr int most_steps = 24;
 
-constexpr float per_sample = 1.0F / (samples_per_side * samples_per_side);
-
-// Adds `amount` to every cell that is covered, in the share to which it is.
-void add_covered(const Coverage& cover, float amount, std::vector<float>& cells) {
-  const CoverageFrame& f = cover.frame();
-  SampleCounts counts;
-  float* cell = cells.data();
-  for (int row = 0; row < f.rows; ++row)
-    for (int word = 0; word < f.words; ++word, cell += cells_per_word) {
-      if (!cover.any(row, word)) continue;
-      if (cover.whole(row, word)) {
-        for (int c = 0; c < cells_per_word; ++c) cell[c] += amount;
-        continue;
-      }
-      cover.count_samples(row, word, counts);
-      for (int c = 0; c < cells_per_word; ++c) cell[c] += amount * per_sample * static_cast<float>(counts[c]);
-    }
-}
-
 }  // namespace
 
 void FootprintSweep::come_from_nowhere() {
@@ -103,18 +84,16 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
     instants_[0].contact.add_to(filling_);
     filling_.fill(settled_);
   }
-  if (!from_nowhere) add_covered(settled_, static_cast<float>(instants_[0].duration_s), map.contact_s);
+  if (!from_nowhere) settled_.add_shares(static_cast<float>(instants_[0].duration_s), map.contact_s);
   touched_.reset(frame);
-  touched_.add(settled_);
-  passed_.reset(frame);
   fresh_.reset(frame);
+  passed_.reset(frame);
   for (std::size_t i = from_nowhere ? 0 : 1; i < count_; ++i) {
     const Instant& instant = instants_[i];
     now_.reset(frame);
     instant.contact.add_to(filling_);
     filling_.fill(now_);
-    add_covered(now_, static_cast<float>(instant.duration_s), map.contact_s);
-    passed_.add(now_);
+    now_.add_shares(static_cast<float>(instant.duration_s), map.contact_s);
     if (i > 0) {
       for_each_passage(instants_[i - 1].contact, instant.contact,
                        [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
@@ -122,25 +101,32 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
                        });
       filling_.fill(passed_);
     }
-    if (!instant.ends_step) continue;
-    fresh_.add_new(passed_, settled_);
-    touched_.add(passed_);
+    if (!instant.ends_step) {
+      passed_.add(now_);
+      continue;
+    }
+    add_step({settled_, now_}, passed_, fresh_, touched_);
     std::swap(settled_, now_);
-    passed_.reset(frame);
   }
-  add_covered(fresh_, 1, map.fresh);
+  fresh_.add_shares(1, map.fresh);
 }
 
-// Newly covered paper takes after the hair that came over it, on the rim: so streaks run on from one frame to
-// the next. What is covered on and on takes after the hair that touches it last.
+// Newly covered paper takes after the hair that came over it first; where streaks are open, after that on the
+// very rim, so that they run on from one frame to the next. What is covered on and on takes after the hair
+// that touches it last.
 void FootprintSweep::stamp(FootprintMap& map, const HairTexture& texture,
                            const std::vector<InkLoad>& loads) const {
   Stamp stamp(touched_.frame(), texture, loads, map);
-  stamp.wait_for(fresh_);
-  for (std::size_t i = 1; i < count_ && stamp.waits(); ++i)
-    stamp.add_passage(instants_[i - 1].contact, instants_[i].contact);
+  const auto contact = [&](std::size_t i) -> const Contact& { return instants_[i].contact.contact(); };
+  if (count_ > 2) stamp.wait_for(fresh_);
+  for (std::size_t i = 1; i < count_ && stamp.waits(); ++i) stamp.add(contact(i));
   stamp.wait_for(touched_);
-  for (std::size_t i = count_; i-- > 0 && stamp.waits();) stamp.add(instants_[i].contact.contact());
+  for (std::size_t i = count_; i-- > 0 && stamp.waits();) stamp.add(contact(i));
+  stamp.name_rest(contact(count_ - 1));
+  if (!stamp.streaky()) return;
+  stamp.wait_for_rim(fresh_);
+  for (std::size_t i = 1; i < count_ && stamp.rim_waits(); ++i)
+    stamp.add_passage(instants_[i - 1].contact, instants_[i].contact);
   stamp.finish();
 }
 

@@ -1,15 +1,37 @@
 #include "sim/brush/stamp.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
+#include <limits>
 
 #include "sim/brush/loading.h"
-#include "sim/brush/scanline.h"
 
 namespace fude {
 
 using Eigen::Vector2d;
+
+namespace {
+
+constexpr int blocks_per_word = 64;
+
+std::uint16_t patch_of(const Hair& hair) {
+  return static_cast<std::uint16_t>(patch_at(static_cast<double>(hair[0]), static_cast<double>(hair[1]) - 1));
+}
+
+bool any(const auto& words) {
+  return std::any_of(words.begin(), words.end(), [](auto bits) { return bits != 0; });
+}
+
+// Bits [first, end) of word `word` of a row of bits.
+std::uint64_t mask(int first, int end, int word) {
+  const int from = std::max(first - 64 * word, 0);
+  const int to = std::min(end - 64 * word, 64);
+  if (from >= to) return 0;
+  return ~std::uint64_t{0} << from & ~std::uint64_t{0} >> (64 - to);
+}
+
+}  // namespace
 
 Stamp::Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
              FootprintMap& map)
@@ -18,144 +40,216 @@ Stamp::Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::
   for (const InkLoad& load : loads)
     streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
   if (streaky_) inked_.assign(map.fresh.size(), 1);
-  words_ = static_cast<std::size_t>(frame_.columns() + 63) / 64;
-  waiting_.assign(words_ * static_cast<std::size_t>(map.rows), 0);
-  named_.assign(waiting_.size(), 0);
+  block_columns_ = frame.columns() / block_side;
+  block_rows_ = (frame.rows + block_side - 1) / block_side;
+  block_words_ = static_cast<std::size_t>((block_columns_ + blocks_per_word - 1) / blocks_per_word);
+  waiting_.assign(block_words_ * static_cast<std::size_t>(block_rows_), 0);
+  named_ = waiting_;
 }
 
 void Stamp::wait_for(const Coverage& cover) {
-  constexpr int in_word = 64 / cells_per_word;
-  for (int row = 0; row < frame_.rows; ++row)
+  constexpr int blocks_in_word = cells_per_word / block_side;
+  for (int block_row = 0; block_row < block_rows_; ++block_row)
     for (int word = 0; word < frame_.words; ++word) {
-      if (!cover.any(row, word)) continue;
-      const std::size_t i = static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(word / in_word);
-      const std::uint64_t cells = cover.whole(row, word) ? 0xffff : cover.cells(row, word);
-      waiting_[i] |= cells << (word % in_word * cells_per_word) & ~named_[i];
+      std::uint64_t bits = 0;
+      for (int row = block_row * block_side; row < std::min((block_row + 1) * block_side, frame_.rows); ++row)
+        bits |= cover.columns(row, word);
+      if (bits == 0) continue;
+      // A bit for each sixteen columns of samples, drawn together.
+      bits |= bits >> 8;
+      bits |= bits >> 4;
+      bits |= bits >> 2;
+      bits |= bits >> 1;
+      bits = (bits & 1) | (bits >> 15 & 2) | (bits >> 30 & 4) | (bits >> 45 & 8);
+      const int column = word * blocks_in_word;
+      const std::size_t i = static_cast<std::size_t>(block_row) * block_words_ +
+                            static_cast<std::size_t>(column / blocks_per_word);
+      waiting_[i] |= bits << (column % blocks_per_word) & ~named_[i];
     }
 }
 
-bool Stamp::waits() const {
-  return std::any_of(waiting_.begin(), waiting_.end(), [](std::uint64_t bits) { return bits != 0; });
+bool Stamp::waits() const { return any(waiting_); }
+bool Stamp::rim_waits() const { return any(rim_); }
+
+// Patches hold one wetness each; between their middles it goes over.
+float Stamp::wetness_at(double along, double around) const {
+  const double row = std::clamp(along * patches_along - 0.5, 0.0, patches_along - 1.0);
+  const double column = (around + 1) * patches_around + (patches_around - 0.5);
+  const int i = std::min(static_cast<int>(row), patches_along - 2);
+  const int j = static_cast<int>(column);
+  const auto up = static_cast<float>(row - i);
+  const auto on = static_cast<float>(column - j);
+  const auto wet = [&](int y, int x) {
+    return loads_[static_cast<std::size_t>(y * patches_around + x % patches_around)].wetness;
+  };
+  const float low = wet(i, j) + on * (wet(i, j + 1) - wet(i, j));
+  const float high = wet(i + 1, j) + on * (wet(i + 1, j + 1) - wet(i + 1, j));
+  return low + up * (high - low);
 }
 
-// Calls take(first, end) for each stretch of cells that wait in [first, end); they wait no longer.
-template <class Take>
-void Stamp::take_waiting(int row, int first, int end, Take take) {
-  for (int word = first / 64; word * 64 < end; ++word) {
-    const std::size_t i = static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(word);
-    std::uint64_t bits = waiting_[i] & ~std::uint64_t{0} << std::max(first - word * 64, 0);
-    if (end - word * 64 < 64) bits &= ~(~std::uint64_t{0} << (end - word * 64));
-    if (bits == 0) continue;
-    waiting_[i] &= ~bits;
-    named_[i] |= bits;
-    while (bits != 0) {
-      const int from = std::countr_zero(bits);
-      const int length = std::countr_one(bits >> from);
-      take(word * 64 + from, word * 64 + from + length);
-      if (from + length == 64) break;
-      bits &= ~std::uint64_t{0} << (from + length);
-    }
-  }
-}
-
-MeshPoint Stamp::in_cells(const MeshPoint& p) const {
-  return {(p.at - Vector2d(frame_.left_mm(), frame_.bottom_mm())) / frame_.cell_mm, p.on_tuft};
+HairCorner Stamp::corner_at(const Vector2d& at, double along, double around) const {
+  return {static_cast<float>((at.x() - frame_.left_mm()) / frame_.cell_mm),
+          static_cast<float>((at.y() - frame_.bottom_mm()) / frame_.cell_mm),
+          Hair(static_cast<float>(along), static_cast<float>(around + 1),
+               streaky_ ? wetness_at(along, around) : 1, 0)};
 }
 
 void Stamp::add(const Contact& contact) {
-  const auto corner = [&](const ContactRing& ring, std::size_t j) {
-    return in_cells({ring.point[j], {ring.along, ring.around[j]}});
+  using Ring = std::array<HairCorner, ring_points>;
+  const auto corners = [&](const ContactRing& ring) {
+    Ring all;
+    for (std::size_t j = 0; j < ring_points; ++j)
+      all[j] = corner_at(ring.point[j], ring.along, ring.around[j]);
+    return all;
   };
   for (std::size_t r = 0; r < contact.run_ends.size(); ++r) {
     const auto run = contact.run(r);
-    for (std::size_t i = 1; i < run.size(); ++i)
-      for (std::size_t j = 1; j < ring_points; ++j) {
-        add_quad(corner(run[i - 1], j - 1), corner(run[i - 1], j), corner(run[i], j), corner(run[i], j - 1));
-      }
+    Ring before = corners(run.front());
+    for (std::size_t i = 1; i < run.size(); ++i) {
+      const Ring here = corners(run[i]);
+      for (std::size_t j = 1; j < ring_points; ++j)
+        name_blocks({before[j - 1], before[j], here[j], here[j - 1]});
+      before = here;
+    }
   }
 }
 
+bool Stamp::waits_under(const HairQuad& quad) const {
+  float left = quad[0].x;
+  float right = left;
+  float bottom = quad[0].y;
+  float top = bottom;
+  for (const HairCorner& corner : quad) {
+    left = std::min(left, corner.x);
+    right = std::max(right, corner.x);
+    bottom = std::min(bottom, corner.y);
+    top = std::max(top, corner.y);
+  }
+  const auto first_word = static_cast<std::size_t>(first_centre(left, block_columns_)) / blocks_per_word;
+  const auto end_word = std::min(
+      static_cast<std::size_t>(first_centre(right, block_columns_)) / blocks_per_word + 1, block_words_);
+  const auto end_row = static_cast<std::size_t>(first_centre(top, block_rows_));
+  std::uint64_t waits = 0;
+  for (auto row = static_cast<std::size_t>(first_centre(bottom, block_rows_)); row < end_row; ++row)
+    for (std::size_t word = first_word; word < end_word; ++word) waits |= waiting_[row * block_words_ + word];
+  return waits != 0;
+}
+
+void Stamp::name_blocks(HairQuad quad) {
+  for (HairCorner& corner : quad) {
+    corner.x /= block_side;
+    corner.y /= block_side;
+  }
+  if (!waits_under(quad)) return;
+  const auto [first_row, end_row] = find_rows(quad, block_rows_, rows_);
+  HairSlope slope;
+  if (streaky_) slope = slope_of(quad);
+  for (int row = first_row; row < end_row; ++row) {
+    const HairRow& ends = rows_[static_cast<std::size_t>(row - first_row)];
+    // Half a block more on either side: hair runs on straight to the rim.
+    const int first = first_centre(ends.from - 0.5F, block_columns_);
+    const int end = first_centre(ends.to + 0.5F, block_columns_);
+    for (int word = first / blocks_per_word; word * blocks_per_word < end; ++word) {
+      const std::size_t i = static_cast<std::size_t>(row) * block_words_ + static_cast<std::size_t>(word);
+      std::uint64_t bits = waiting_[i] & mask(first, end, word);
+      if (bits == 0) continue;
+      waiting_[i] &= ~bits;
+      named_[i] |= bits;
+      const Hair by_column = (ends.last - ends.first) / std::max(ends.to - ends.from, 1e-6F);
+      const Hair start = ends.first + (0.5F - ends.from) * by_column;
+      for (; bits != 0; bits &= bits - 1) {
+        const int column = word * blocks_per_word + std::countr_zero(bits);
+        write_block(row, column, start + static_cast<float>(column) * by_column, slope);
+      }
+    }
+  }
+}
+
+Hair Stamp::hair_near(const Contact& contact, int row, int column) const {
+  const Vector2d centre(frame_.left_mm() + (column + 0.5) * block_side * frame_.cell_mm,
+                        frame_.bottom_mm() + (row + 0.5) * block_side * frame_.cell_mm);
+  Hair nearest(1, 1, 0, 0);
+  double least = std::numeric_limits<double>::max();
+  for (const ContactRing& ring : contact.rings)
+    for (std::size_t j = 0; j < ring_points; ++j) {
+      const double distance = (ring.point[j] - centre).squaredNorm();
+      if (distance >= least) continue;
+      least = distance;
+      nearest = corner_at(ring.point[j], ring.along, ring.around[j]).hair;
+    }
+  return nearest;
+}
+
+void Stamp::name_rest(const Contact& contact) {
+  for (int row = 0; row < block_rows_; ++row)
+    for (std::size_t word = 0; word < block_words_; ++word)
+      for (std::uint64_t bits = waiting_[static_cast<std::size_t>(row) * block_words_ + word]; bits != 0;
+           bits &= bits - 1) {
+        const int column = static_cast<int>(word) * blocks_per_word + std::countr_zero(bits);
+        write_block(row, column, hair_near(contact, row, column), {});
+      }
+}
+
+void Stamp::write_block(int row, int column, const Hair& centre, const HairSlope& by_block) {
+  const int end_row = std::min((row + 1) * block_side, frame_.rows);
+  if (!streaky_) {
+    const std::uint16_t patch = patch_of(centre);
+    for (int y = row * block_side; y < end_row; ++y)
+      std::fill_n(map_.patch.data() + y * map_.columns + column * block_side, block_side, patch);
+    return;
+  }
+  constexpr float share = 1.0F / block_side;
+  const Hair by_x = share * by_block.by_x;
+  const Hair by_y = share * by_block.by_y;
+  Hair start = centre + 0.5F * (1 - block_side) * (by_x + by_y);
+  for (int y = row * block_side; y < end_row; ++y, start += by_y) {
+    Hair hair = start;
+    for (int x = column * block_side; x < (column + 1) * block_side; ++x, hair += by_x)
+      write_cell(static_cast<std::size_t>(y * map_.columns + x), hair);
+  }
+}
+
+void Stamp::write_cell(std::size_t cell, const Hair& hair) {
+  map_.patch[cell] = patch_of(hair);
+  inked_[cell] = static_cast<float>(texture_.inked(
+      static_cast<double>(hair[0]), static_cast<double>(hair[1]) - 1, static_cast<double>(hair[2])));
+}
+
+void Stamp::wait_for_rim(const Coverage& cover) {
+  rim_.clear();
+  for (int row = 0; row < frame_.rows; ++row)
+    for (int word = 0; word < frame_.words; ++word)
+      rim_.push_back(static_cast<std::uint16_t>(cover.any(row, word) ? cover.cells(row, word) : 0));
+}
+
 void Stamp::add_passage(const ContactMesh& from, const ContactMesh& to) {
+  const auto corner = [&](const MeshPoint& p) { return corner_at(p.at, p.on_tuft.x(), p.on_tuft.y()); };
   for_each_passage(from, to,
                    [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
-                     add_quad(in_cells(a), in_cells(b), in_cells(c), in_cells(d));
+                     write_cells({corner(a), corner(b), corner(c), corner(d)});
                    });
 }
 
-void Stamp::add_quad(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
-  const Vector2d low = a.at.cwiseMin(b.at).cwiseMin(c.at.cwiseMin(d.at));
-  const Vector2d high = a.at.cwiseMax(b.at).cwiseMax(c.at.cwiseMax(d.at));
-  const auto first_word = static_cast<std::size_t>(std::max(low.x(), 0.0)) / 64;
-  const auto end_word = std::min(static_cast<std::size_t>(std::max(high.x(), 0.0)) / 64 + 1, words_);
-  const auto first_row = static_cast<std::size_t>(std::max(low.y(), 0.0));
-  const auto end_row =
-      std::min(static_cast<std::size_t>(std::max(high.y(), 0.0)) + 1, static_cast<std::size_t>(map_.rows));
-  std::uint64_t any = 0;
-  for (std::size_t row = first_row; row < end_row; ++row)
-    for (std::size_t word = first_word; word < end_word; ++word) any |= waiting_[row * words_ + word];
-  if (any == 0) return;
-  add_triangle(a, b, c);
-  add_triangle(a, c, d);
-}
-
-// The place on the tuft goes over linearly within a triangle.
-void Stamp::add_triangle(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c) {
-  const Vector2d u = b.at - a.at;
-  const Vector2d v = c.at - a.at;
-  const double area = u.x() * v.y() - u.y() * v.x();
-  if (std::abs(area) < 1e-12) return;
-  const Vector2d by_u = (b.on_tuft - a.on_tuft) / area;
-  const Vector2d by_v = (c.on_tuft - a.on_tuft) / area;
-  const Vector2d by_x = v.y() * by_u - u.y() * by_v;
-  const Vector2d by_y = u.x() * by_v - v.x() * by_u;
-  scan_triangle(a.at, b.at, c.at, map_.rows, [&](int row, double from, double to) {
-    const int first = first_centre(from, map_.columns);
-    const int end = first_centre(to, map_.columns);
-    std::uint16_t* patches = map_.patch.data() + at(row, 0);
-    take_waiting(row, first, end, [&](int from_column, int end_column) {
-      const Vector2d start = a.on_tuft + (row + 0.5 - a.at.y()) * by_y - a.at.x() * by_x;
-      const auto patch = [&](int column) {
-        const Vector2d place = start + (column + 0.5) * by_x;
-        return static_cast<std::uint16_t>(patch_at(place[0], place[1]));
-      };
-      const std::uint16_t head = patch(from_column);
-      if (head == patch(end_column - 1))
-        std::fill(patches + from_column, patches + end_column, head);
-      else
-        for (int column = from_column; column < end_column; ++column) patches[column] = patch(column);
-      if (!streaky_) return;
-      for (int column = from_column; column < end_column; ++column) {
-        const Vector2d place = start + (column + 0.5) * by_x;
-        const double wetness = static_cast<double>(loads_[patches[column]].wetness);
-        inked_[at(row, column)] = static_cast<float>(texture_.inked(place[0], place[1], wetness));
-      }
-    });
-  });
-}
-
-std::size_t Stamp::nearest(int row, int column) const {
-  const auto named = [&](int y, int x) {
-    return (named_[static_cast<std::size_t>(y) * words_ + static_cast<std::size_t>(x / 64)] >> (x % 64) &
-            1) != 0;
-  };
-  for (int ring = 1; ring < 4; ++ring)
-    for (int y = std::max(0, row - ring); y <= std::min(map_.rows - 1, row + ring); ++y)
-      for (int x = std::max(0, column - ring); x <= std::min(map_.columns - 1, column + ring); ++x)
-        if (named(y, x)) return at(y, x);
-  return at(row, column);
+void Stamp::write_cells(const HairQuad& quad) {
+  const auto [first_row, end_row] = find_rows(quad, frame_.rows, rows_);
+  for (int row = first_row; row < end_row; ++row) {
+    const HairRow& ends = rows_[static_cast<std::size_t>(row - first_row)];
+    const int first = first_centre(ends.from, map_.columns);
+    const int end = first_centre(ends.to, map_.columns);
+    if (first >= end) continue;
+    const Hair by_column = (ends.last - ends.first) / std::max(ends.to - ends.from, 1e-6F);
+    Hair hair = ends.first + (static_cast<float>(first) + 0.5F - ends.from) * by_column;
+    for (int column = first; column < end; ++column, hair += by_column) {
+      std::uint16_t& waits = rim_[static_cast<std::size_t>(row * frame_.words + column / cells_per_word)];
+      const auto bit = static_cast<std::uint16_t>(1U << column % cells_per_word);
+      if ((waits & bit) == 0) continue;
+      waits = static_cast<std::uint16_t>(waits & ~bit);
+      write_cell(static_cast<std::size_t>(row * map_.columns + column), hair);
+    }
+  }
 }
 
 void Stamp::finish() {
-  for (int row = 0; row < map_.rows; ++row)
-    for (std::size_t word = 0; word < words_; ++word)
-      for (std::uint64_t bits = waiting_[static_cast<std::size_t>(row) * words_ + word]; bits != 0;
-           bits &= bits - 1) {
-        const int column = static_cast<int>(word) * 64 + std::countr_zero(bits);
-        const std::size_t like = nearest(row, column);
-        map_.patch[at(row, column)] = map_.patch[like];
-        if (streaky_) inked_[at(row, column)] = inked_[like];
-      }
-  if (!streaky_) return;
   for (std::size_t i = 0; i < inked_.size(); ++i) {
     map_.fresh[i] *= inked_[i];
     map_.contact_s[i] *= inked_[i];

@@ -1,4 +1,7 @@
 // What of the tuft stands over each cell of a footprint: its patch, and how much of its hair leaves ink.
+//
+// Hair that stays on the paper is looked up once a block of cells. Where streaks are open, newly covered
+// cells are looked up one by one under the rim that passes over them.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +12,7 @@
 #include "signal/ink_event.h"
 #include "sim/brush/contact_mesh.h"
 #include "sim/brush/coverage.h"
+#include "sim/brush/hair_quad.h"
 #include "sim/brush/hair_texture.h"
 #include "sim/brush/tuft_surface.h"
 
@@ -17,43 +21,58 @@ namespace fude {
 // Names the patches of a map's cells, and takes off the share of them under hair that leaves no ink.
 class Stamp {
  public:
-  // `map` is over `frame`; both outlive the stamp.
+  // `map` is over `frame`; all outlive the stamp.
   Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
         FootprintMap& map);
 
-  // Cells that hold a sample of `cover` wait to be named, if they are not yet.
+  // Whether streaks are open anywhere.
+  bool streaky() const { return streaky_; }
+
+  // Blocks in which `cover` holds a sample wait to be named, if they are not yet.
   void wait_for(const Coverage& cover);
   bool waits() const;
-
-  // Names cells that wait: those under the contact, or under its rim on its way from a to b.
+  // Names blocks that wait, those under the contact.
   void add(const Contact& contact);
+  // Names what still waits, since it was never under a contact as thick as a block, after the nearest hair.
+  void name_rest(const Contact& contact);
+
+  // Over that, cells that hold a sample of `cover` wait to be written one by one.
+  void wait_for_rim(const Coverage& cover);
+  bool rim_waits() const;
+  // Writes cells that wait under the rim of the contact on its way from a to b.
   void add_passage(const ContactMesh& a, const ContactMesh& b);
 
-  // Cells that still wait, since no centre of theirs was covered, take after a neighbour.
+  // Takes off what is not inked.
   void finish();
 
  private:
-  MeshPoint in_cells(const MeshPoint& p) const;
-  void add_quad(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d);
-  void add_triangle(const MeshPoint& a, const MeshPoint& b, const MeshPoint& c);
-  template <class Take>
-  void take_waiting(int row, int first, int end, Take take);
-  std::size_t nearest(int row, int column) const;
-  std::size_t at(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.columns) +
-           static_cast<std::size_t>(column);
-  }
+  static constexpr int block_side = 4;  // cells
+
+  HairCorner corner_at(const Eigen::Vector2d& at, double along, double around) const;
+  float wetness_at(double along, double around) const;
+  bool waits_under(const HairQuad& quad) const;
+  void name_blocks(HairQuad quad);
+  Hair hair_near(const Contact& contact, int row, int column) const;
+  void write_block(int row, int column, const Hair& centre, const HairSlope& by_block);
+  void write_cells(const HairQuad& quad);
+  void write_cell(std::size_t cell, const Hair& hair);
 
   const CoverageFrame& frame_;
   const HairTexture& texture_;
   const std::vector<InkLoad>& loads_;
   FootprintMap& map_;
   bool streaky_ = false;
-  std::vector<float> inked_;  // where streaky
-  // A bit a cell, in rows of whole words.
-  std::size_t words_ = 0;
+  std::vector<float> inked_;  // of each cell, where streaky
+  std::vector<HairRow> rows_;
+
+  // A bit a block, in rows of whole words.
+  int block_columns_ = 0;
+  int block_rows_ = 0;
+  std::size_t block_words_ = 0;  // in a row
   std::vector<std::uint64_t> waiting_;
   std::vector<std::uint64_t> named_;
+
+  std::vector<std::uint16_t> rim_;  // a bit a cell that waits, 16 in a row together
 };
 
 }  // namespace fude
