@@ -13,6 +13,7 @@ class App;
 namespace fude {
 
 void add_bench(CLI::App& fude, int& status);
+void add_brushes(CLI::App& fude, int& status);
 void add_calibrate(CLI::App& fude, int& status);
 void add_demo(CLI::App& fude, int& status);
 void add_devices(CLI::App& fude, int& status);

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   fude::add_serve(app, status);
   fude::add_play(app, status);
   fude::add_calibrate(app, status);
+  fude::add_brushes(app, status);
   fude::add_bench(app, status);
 #ifdef FUDE_WINDOW
   fude::add_paint(app, status);

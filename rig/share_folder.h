@@ -18,4 +18,10 @@ std::filesystem::path user_folder();
 Result<std::filesystem::path> find_shared(const std::string& kind, const std::string& name,
                                           const std::string& extension);
 
+// The names there are of a kind, in order, each once.
+std::vector<std::string> shared_names(const std::string& kind, const std::string& extension);
+
+// What the first line of a TOML file says after its #; empty where it says nothing.
+std::string first_remark(const std::filesystem::path& file);
+
 }  // namespace fude

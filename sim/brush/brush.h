@@ -83,6 +83,7 @@ class Brush {
   // Straightens the tuft, as on the rim of the ink stone; keeps its ink.
   void reshape();
 
+  const BrushSpec& spec() const { return tuft_.spec; }
   const BrushState& state() const { return state_; }
   // A state of a tuft with other segments is an error of the caller (std::invalid_argument).
   void restore(const BrushState& state);

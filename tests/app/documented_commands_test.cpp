@@ -61,7 +61,8 @@ Answer help_of(const std::string& command) {
 }
 
 bool is_name(const std::string& word) {
-  return std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
+  return !word.starts_with('-') &&
+         std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
 }
 
 bool has_subcommands(const Answer& help) { return help.text.find("Subcommands:") != std::string::npos; }
@@ -80,7 +81,9 @@ TEST(DocumentedCommands, AreThoseOfTheProgram) {
       command += " " + line.words[1];
     const Answer help = help_of(command);
     EXPECT_EQ(help.status, 0) << line.shown << "\n" << help.text;
-    EXPECT_FALSE(has_subcommands(help)) << line.shown << "\nnames no command of " << command;
+    // brushes lists what its subcommand shows one of.
+    EXPECT_TRUE(command == "brushes" || !has_subcommands(help))
+        << line.shown << "\nnames no command of " << command;
     for (const std::string& word : line.words)
       if (word.starts_with("--")) {
         const std::string option = word.substr(0, word.find('='));
