@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/painting_options.h"
@@ -13,7 +14,12 @@
 #include "rig/bench_pipeline.h"
 #include "rig/bench_record.h"
 #include "sim/brush/bench_brush.h"
+#include "sim/brush/bench_gesture.h"
 #include "sim/ink/bench_ink.h"
+
+#ifdef FUDE_PEERS
+#include "sim/brush/bench_peers.h"
+#endif
 
 namespace fude {
 namespace {
@@ -79,14 +85,57 @@ void add_ink(CLI::App& bench, int& status) {
   });
 }
 
+Json times(const BrushBench::Times& t) { return {{"median", t.median}, {"p99", t.p99}, {"max", t.max}}; }
+
+Json brush_figures(const BrushSpec& spec, const BenchGesture& gesture, int tufts, bool footprint) {
+  const BrushBench b = bench_brush(spec, gesture, tufts);
+  Json figures{{"gesture", gesture.name},
+               {"tufts", tufts},
+               {"frames", b.frames},
+               {"us_per_frame", times(b.us_per_frame)},
+               {"iterations", {{"median", b.iterations_median}, {"max", b.iterations_max}}},
+               {"unconverged", b.unconverged},
+               {"max_violation", b.max_violation}};
+  if (footprint) {
+    const MoveBench m = bench_move(spec, gesture);
+    figures["at_1_khz"] = {{"frames", m.frames},
+                           {"marks", m.marks},
+                           {"us_per_frame", times(m.us_per_frame)},
+                           {"unconverged", m.unconverged}};
+  }
+#ifdef FUDE_PEERS
+  const PeerBench p = bench_peers(spec, gesture);
+  const auto one = [](const PeerFigures& f) {
+    return Json{{"us_per_frame", times(f.us_per_frame)},
+                {"energy", f.energy},
+                {"max_violation", f.max_violation},
+                {"failures", f.failures}};
+  };
+  figures["peer"] = {{p.own.name, one(p.own)}};
+  for (const PeerFigures& peer : p.peers) figures["peer"][peer.name] = one(peer);
+  figures["energy_above_best_peer"] = {{"worst", p.worst_gap}, {"frame", p.worst_frame}};
+#endif
+  return figures;
+}
+
 void add_brush(CLI::App& bench, int& status) {
   struct Options {
-    std::string brush = "round-goat";
-    bool json = false;
+    std::string brush = "round-goat", gesture = std::string(bench_gestures()[0].name);
+    int tufts = 1;
+    bool footprint = false, json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = bench.add_subcommand("brush", "solves of one tuft: press, drag, turn, lift");
+  CLI::App* command = bench.add_subcommand("brush", "solves of a tuft along a gesture of eight seconds");
   command->add_option("--brush", options->brush, "a brush of share/brushes, or a TOML file");
+  std::vector<std::string> names = {"all"};
+  for (const BenchGesture& gesture : bench_gestures()) names.emplace_back(gesture.name);
+  command->add_option("--gesture", options->gesture, "what the hand does")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  command->add_option("--tufts", options->tufts, "side by side, solved one after the other")
+      ->check(CLI::Range(1, 64));
+  command->add_flag("--footprint", options->footprint,
+                    "also whole frames at 1 kHz, footprint and ink with them");
   command->add_flag("--json", options->json, "as JSON");
   command->callback([options, &status] {
     PaintingOptions painting;
@@ -96,16 +145,10 @@ void add_brush(CLI::App& bench, int& status) {
       status = report(settings.error());
       return;
     }
-    const BrushBench b = bench_brush(settings->painting.brush);
-    const auto times = [](const BrushBench::Times& t) {
-      return Json{{"median", t.median}, {"p99", t.p99}, {"max", t.max}};
-    };
-    print(Json{{"frames", b.frames},
-               {"us_per_frame", times(b.us_per_frame)},
-               {"us_per_footprint", times(b.us_per_footprint)},
-               {"iterations", {{"median", b.iterations_median}, {"max", b.iterations_max}}},
-               {"unconverged", b.unconverged}},
-          options->json);
+    for (const BenchGesture& gesture : bench_gestures())
+      if (options->gesture == "all" || options->gesture == gesture.name)
+        print(brush_figures(settings->painting.brush, gesture, options->tufts, options->footprint),
+              options->json);
   });
 }
 

@@ -1,15 +1,12 @@
 #include "sim/brush/bench_brush.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "signal/elementary.h"
-#include "sim/brush/footprint.h"
-#include "sim/brush/loading.h"
+#include "sim/brush/brush.h"
 #include "sim/brush/tuft_step.h"
 
 namespace fude {
@@ -17,28 +14,11 @@ namespace {
 
 constexpr int frames = 2000;
 constexpr double frame_s = 1.0 / 250;
-
-double ease(double t) {
-  const double u = std::clamp(t, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
-Eigen::Quaterniond about(const Eigen::Vector3d& axis, double angle) {
-  const auto [sine, cosine] = elementary::sine_cosine(0.5 * angle);
-  Eigen::Quaterniond q;
-  q.w() = cosine;
-  q.vec() = sine * axis;
-  return q;
-}
+constexpr double row_step_mm = 2;  // between the roots of several tufts
+constexpr double tracker_hz = 1000;
 
 double at_share(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
-BrushBench::Times times_of(std::vector<double> us) {
-  if (us.empty()) return {};
-  std::sort(us.begin(), us.end());
-  return {at_share(us, 0.5), at_share(us, 0.99), us.back()};
 }
 
 template <class Work>
@@ -50,56 +30,68 @@ double microseconds(Work work) {
 
 }  // namespace
 
-// In from the air, pressed, drawn along with changing pressure, turned, lifted off and away.
-Pose<Paper, Handle> bench_pose(const BrushSpec& spec, double t) {
-  const double scale = spec.tuft_length_mm / 32;
-  const double wave = elementary::sine(3 * t) * ease(t - 1) * (1 - ease(2 * t - 10));
-  const double drag = ease((t - 1) / 2.5);
-  const double turn = ease((t - 3.5) / 2.5);
-  Pose<Paper, Handle> pose;
-  pose.translation = scale * Eigen::Vector3d(60 * drag + 20 * elementary::sine(3 * turn), -40 * turn,
-                                             36 - 18 * ease(t / 1.2) + 4 * wave + 20 * ease((t - 6) / 1.2));
-  pose.rotation = about(Eigen::Vector3d::UnitY(), 0.15 * elementary::cosine(t)) *
-                  about(Eigen::Vector3d::UnitX(), 0.25) * about(Eigen::Vector3d::UnitZ(), turn);
-  return pose;
+BrushBench::Times times_of(std::vector<double> us) {
+  if (us.empty()) return {};
+  std::sort(us.begin(), us.end());
+  return {at_share(us, 0.5), at_share(us, 0.99), us.back()};
 }
 
-BrushBench bench_brush(const BrushSpec& spec, int runs) {
+BrushBench bench_brush(const BrushSpec& spec, const BenchGesture& gesture, int tufts, int runs) {
   const Tuft tuft = make_tuft(spec);
-  const HairTexture texture(spec, 1);
-  Loading loading = dry_loading(tuft);
-  fill(loading, 1, {1, 0, 0, 0.1F});
-  const std::vector<InkLoad> loads = offered(loading);
   std::vector<double> solve_us(frames, std::numeric_limits<double>::infinity());
-  std::vector<double> footprint_us(frames, std::numeric_limits<double>::infinity());
   std::vector<double> iterations;
   BrushBench bench;
   bench.frames = frames;
   for (int run = 0; run < runs; ++run) {
-    TuftState state = rest_state(tuft);
-    FootprintSweep sweep;
+    std::vector<TuftState> states(static_cast<std::size_t>(tufts), rest_state(tuft));
     for (int f = 0; f < frames; ++f) {
-      const auto i = static_cast<std::size_t>(f);
-      SolveReport report;
-      const Pose<Paper, Handle> pose = bench_pose(spec, f * frame_s);
-      const double solve = microseconds([&] { report = advance(tuft, state, pose, frame_s, f == 0); });
-      const std::array<TimedSurface, 1> now = {
-          {{swollen(surface_of(tuft, state.x, state.paper_from_handle), spec.soak_mm), frame_s}}};
-      bool touched = false;
-      const double footprint =
-          microseconds([&] { touched = sweep.sweep(now, tuft.spec.cell_mm, texture, loads).has_value(); });
-      solve_us[i] = std::min(solve_us[i], solve);
-      if (touched) footprint_us[i] = std::min(footprint_us[i], footprint);
+      const Pose<Paper, Handle> pose = gesture.pose(spec, f * frame_s);
+      std::vector<SolveReport> reports(states.size());
+      const double us = microseconds([&] {
+        for (std::size_t t = 0; t < states.size(); ++t) {
+          Pose<Paper, Handle> root = pose;
+          root.translation += pose.rotation * Eigen::Vector3d(row_step_mm * static_cast<double>(t), 0, 0);
+          reports[t] = advance(tuft, states[t], root, frame_s, f == 0);
+        }
+      });
+      solve_us[static_cast<std::size_t>(f)] = std::min(solve_us[static_cast<std::size_t>(f)], us);
       if (run > 0) continue;
-      iterations.push_back(report.iterations);
-      bench.iterations_max = std::max(bench.iterations_max, report.iterations);
-      if (!report.converged) ++bench.unconverged;
+      for (const SolveReport& report : reports) {
+        iterations.push_back(report.iterations);
+        bench.iterations_max = std::max(bench.iterations_max, report.iterations);
+        bench.unconverged += report.converged ? 0 : 1;
+        bench.max_violation = std::max(bench.max_violation, report.violation_mm / spec.tuft_length_mm);
+      }
     }
   }
-  std::erase_if(footprint_us, [](double us) { return std::isinf(us); });
   bench.us_per_frame = times_of(solve_us);
-  bench.us_per_footprint = times_of(footprint_us);
   bench.iterations_median = times_of(iterations).median;
+  return bench;
+}
+
+MoveBench bench_move(const BrushSpec& spec, const BenchGesture& gesture, int runs) {
+  constexpr int moves = static_cast<int>(bench_gesture_s * tracker_hz);
+  std::vector<double> us(moves, std::numeric_limits<double>::infinity());
+  MoveBench bench;
+  bench.frames = moves;
+  for (int run = 0; run < runs; ++run) {
+    Brush brush(spec, 1);
+    brush.load(1, {1, 0, 0, 0.1F});
+    brush.set_endless(true);
+    for (int f = 0; f < moves; ++f) {
+      BrushInput input;
+      input.time.host = Timestamp(Duration(static_cast<std::int64_t>(f * (1e9 / tracker_hz))));
+      input.origin = PoseOrigin::measured;
+      input.paper_from_handle = gesture.pose(spec, f / tracker_hz);
+      BrushFrame frame;
+      auto& least = us[static_cast<std::size_t>(f)];
+      least = std::min(least, microseconds([&] { frame = brush.move(input); }));
+      if (run > 0) continue;
+      bench.marks += frame.deposit ? 1 : 0;
+      bench.unconverged += frame.solve.converged ? 0 : 1;
+    }
+  }
+  bench.us_per_frame = times_of(us);
   return bench;
 }
 

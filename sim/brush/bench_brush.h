@@ -1,8 +1,10 @@
-// How fast a brush is on this machine, and whether its solver holds: a press, drag, turn, lift
-// trajectory of 2000 frames at 250 Hz, run several times and the least time of each frame taken.
+// How fast a brush is on this machine, and whether its solver holds, led through a gesture of
+// bench_gesture.h.
 #pragma once
 
-#include "signal/pose.h"
+#include <vector>
+
+#include "sim/brush/bench_gesture.h"
 #include "sim/brush/brush_spec.h"
 
 namespace fude {
@@ -14,16 +16,27 @@ struct BrushBench {
     double max = 0;
   };
   int frames = 0;
-  Times us_per_frame;      // the solve and what belongs to it (advance)
-  Times us_per_footprint;  // sweeping the footprint, over the frames that touch
+  Times us_per_frame;  // the solves of all tufts and what belongs to them (advance)
   double iterations_median = 0;
   int iterations_max = 0;
   int unconverged = 0;
+  double max_violation = 0;  // of the paper, over the length of the tuft
 };
 
-BrushBench bench_brush(const BrushSpec& spec, int runs = 5);
+// 2000 frames of 4 ms, run several times and the least time of each frame taken. `tufts` of them stand side
+// by side on one handle, each a tuft of the brush, solved one after the other.
+BrushBench bench_brush(const BrushSpec& spec, const BenchGesture& gesture, int tufts = 1, int runs = 5);
 
-// The trajectory: pose of the handle at `time_s` in [0, 8], scaled to the length of the tuft.
-Pose<Paper, Handle> bench_pose(const BrushSpec& spec, double time_s);
+struct MoveBench {
+  int frames = 0;
+  int marks = 0;  // frames that left ink
+  BrushBench::Times us_per_frame;
+  int unconverged = 0;
+};
+
+// The whole of Brush::move, footprint and loading with it, by a tracker of 1 kHz: 8000 frames, as above.
+MoveBench bench_move(const BrushSpec& spec, const BenchGesture& gesture, int runs = 5);
+
+BrushBench::Times times_of(std::vector<double> us);
 
 }  // namespace fude

@@ -12,19 +12,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double violation_tolerance = 1e-11;
 constexpr int max_exchanges = 400;
 
-// Lower Cholesky factor; false where the matrix is not safely positive definite.
-bool factor(const SquareMatrix& h, SquareMatrix& l) {
-  const int n = static_cast<int>(h.rows());
-  l = h;
-  for (int j = 0; j < n; ++j) {
-    for (int k = 0; k < j; ++k) l.col(j).tail(n - j) -= l(j, k) * l.col(k).tail(n - j);
-    const double pivot = l(j, j);
-    if (!(pivot > 1e-12 * h(j, j)) || !(h(j, j) < infinite)) return false;
-    l.col(j).tail(n - j) /= std::sqrt(pivot);
-  }
-  return true;
-}
-
 class DualActiveSet {
  public:
   explicit DualActiveSet(const QuadraticProgram& p)
@@ -50,9 +37,9 @@ class DualActiveSet {
     }
   }
   int most_violated() const;
-  bool start();
+  void start();
   bool take_up(int c);
-  void append(int c, double multiplier);
+  void append(int c, double multiplier, double free_length);
   void drop(int position);
 
   const QuadraticProgram& p_;
@@ -70,26 +57,14 @@ class DualActiveSet {
   std::array<bool, max_constraints + 2 * max_variables> is_active_{};
 };
 
-bool DualActiveSet::start() {
-  SquareMatrix l;
-  if (!factor(p_.hessian, l)) return false;
-  // basis = L⁻ᵀ, column by column of L⁻¹.
-  basis_.setZero(n_, n_);
-  for (int j = 0; j < n_; ++j) {
-    Variables column = Variables::Zero(n_);
-    column[j] = 1;
-    for (int k = j; k < n_; ++k) {
-      column[k] /= l(k, k);
-      if (k + 1 < n_) column.tail(n_ - k - 1) -= column[k] * l.col(k).tail(n_ - k - 1);
-    }
-    basis_.row(j) = column.transpose();
-  }
+void DualActiveSet::start() {
+  basis_ = p_.inverse_factor;
   projected_.noalias() = basis_.transpose() * p_.gradient;
   d_.noalias() = -(basis_ * projected_);
   triangle_.setZero(n_, n_);
   multipliers_.setZero(n_);
   dual_step_.setZero(n_);
-  return true;
+  direction_.setZero(n_);
 }
 
 int DualActiveSet::most_violated() const {
@@ -106,21 +81,24 @@ int DualActiveSet::most_violated() const {
   return worst;
 }
 
-void DualActiveSet::append(int c, double multiplier) {
-  // Givens rotations leave the projected normal with nothing below its new diagonal entry.
-  for (int j = n_ - 1; j > active_count_; --j) {
-    const double a = projected_[j - 1];
-    const double b = projected_[j];
-    if (b == 0) continue;
-    const double h = std::sqrt(a * a + b * b);
-    const double cosine = a / h;
-    const double sine = b / h;
-    projected_[j - 1] = h;
-    projected_[j] = 0;
-    const Variables left = basis_.col(j - 1);
-    basis_.col(j - 1) = cosine * left + sine * basis_.col(j);
-    basis_.col(j) = cosine * basis_.col(j) - sine * left;
+// `direction_` is the free columns of the basis times the projected normal's free part, whose length is
+// given.
+void DualActiveSet::append(int c, double multiplier, double free_length) {
+  // A Householder reflection of the free columns leaves the projected normal with nothing below its new
+  // diagonal entry.
+  const int q = active_count_;
+  const int rest = n_ - q;
+  const double turned = projected_[q] > 0 ? -free_length : free_length;
+  projected_[q] -= turned;
+  const double half_square = -turned * projected_[q];  // of the mirror's normal
+  if (half_square > 0) {
+    direction_ -= turned * basis_.col(q);
+    for (int j = 0; j < rest; ++j) {
+      const double share = projected_[q + j] / half_square;
+      if (share != 0) basis_.col(q + j) -= share * direction_;
+    }
   }
+  projected_[q] = turned;
   triangle_.col(active_count_).head(active_count_ + 1) = projected_.head(active_count_ + 1);
   active_[static_cast<std::size_t>(active_count_)] = c;
   multipliers_[active_count_] = multiplier;
@@ -161,7 +139,7 @@ bool DualActiveSet::take_up(int c) {
     project_normal(c);
     const int q = active_count_;
     const double length = projected_.squaredNorm();
-    const double free_length = projected_.tail(n_ - q).squaredNorm();
+    const double free_square = projected_.tail(n_ - q).squaredNorm();
     dual_step_.head(q) = projected_.head(q);
     for (int i = q - 1; i >= 0; --i) {
       dual_step_[i] /= triangle_(i, i);
@@ -175,8 +153,8 @@ bool DualActiveSet::take_up(int c) {
         leaving = i;
       }
     }
-    const bool movable = free_length > 1e-13 * length;
-    const double full = movable ? -slack(c) / free_length : infinite;
+    const bool movable = free_square > 1e-13 * length;
+    const double full = movable ? -slack(c) / free_square : infinite;
     const double step = std::min(partial, full);
     if (step == infinite) return false;
     multipliers_.head(q) -= step * dual_step_.head(q);
@@ -186,7 +164,7 @@ bool DualActiveSet::take_up(int c) {
       d_ += step * direction_;
     }
     if (movable && full <= partial) {
-      append(c, multiplier);
+      append(c, multiplier, std::sqrt(free_square));
       return true;
     }
     drop(leaving);
@@ -196,10 +174,7 @@ bool DualActiveSet::take_up(int c) {
 
 QuadraticSolution DualActiveSet::run() {
   QuadraticSolution solution;
-  if (!start()) {
-    solution.outcome = QuadraticOutcome::indefinite;
-    return solution;
-  }
+  start();
   for (int exchange = 0; exchange < max_exchanges; ++exchange) {
     const int c = most_violated();
     if (c < 0) break;
@@ -218,6 +193,26 @@ QuadraticSolution DualActiveSet::run() {
 }
 
 }  // namespace
+
+bool invert_factor(const SquareMatrix& hessian, SquareMatrix& inverse_factor) {
+  const int n = static_cast<int>(hessian.rows());
+  SquareMatrix l = hessian;
+  for (int j = 0; j < n; ++j) {
+    for (int k = 0; k < j; ++k) l.col(j).tail(n - j) -= l(j, k) * l.col(k).tail(n - j);
+    const double pivot = l(j, j);
+    if (!(pivot > 1e-12 * hessian(j, j)) || !(hessian(j, j) < infinite)) return false;
+    l.col(j).tail(n - j) /= std::sqrt(pivot);
+  }
+  // L⁻ᵀ by backward substitution, column by column: column j has nothing below its diagonal.
+  inverse_factor.setZero(n, n);
+  for (int j = 0; j < n; ++j) {
+    inverse_factor(j, j) = 1 / l(j, j);
+    for (int i = j - 1; i >= 0; --i)
+      inverse_factor(i, j) =
+          -l.col(i).segment(i + 1, j - i).dot(inverse_factor.col(j).segment(i + 1, j - i)) / l(i, i);
+  }
+  return true;
+}
 
 QuadraticSolution solve(const QuadraticProgram& program) { return DualActiveSet(program).run(); }
 

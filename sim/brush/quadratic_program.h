@@ -8,9 +8,12 @@
 
 namespace fude {
 
+// Z with hessian⁻¹ = Z Zᵀ. False where the hessian is not safely positive definite.
+bool invert_factor(const SquareMatrix& hessian, SquareMatrix& inverse_factor);
+
 // minimise ½ dᵀ hessian d + gradientᵀ d  where  rows d ≥ right and low ≤ d ≤ high.
 struct QuadraticProgram {
-  const SquareMatrix& hessian;  // symmetric, positive definite
+  const SquareMatrix& inverse_factor;  // of the hessian, see above; any such Z will do
   const Variables& gradient;
   const Jacobian& rows;
   const Multipliers& right;
@@ -18,7 +21,7 @@ struct QuadraticProgram {
   const Variables& high;
 };
 
-enum class QuadraticOutcome { solved, infeasible, indefinite };
+enum class QuadraticOutcome { solved, infeasible };
 
 struct QuadraticSolution {
   QuadraticOutcome outcome = QuadraticOutcome::solved;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/brush/free_program.h"
 #include "sim/brush/quadratic_program.h"
 
 namespace fude {
@@ -24,7 +25,7 @@ double merit(const Evaluation& at, const Multipliers& penalty) {
 // The quadratic program around a point; where its constraints contradict each other, violated ones
 // are asked for only in part (Powell 1978), at last not at all.
 QuadraticSolution step_from(const Program& program, const Variables& x, const Evaluation& at,
-                            const SquareMatrix& hessian, const Multipliers& constraints) {
+                            const SquareMatrix& inverse_factor, const Multipliers& constraints) {
   const Variables low = (program.low - x).cwiseMax(-longest_step * program.unit).cwiseMin(0.0);
   const Variables high = (program.high - x).cwiseMin(longest_step * program.unit).cwiseMax(0.0);
   QuadraticSolution solution;
@@ -32,38 +33,52 @@ QuadraticSolution step_from(const Program& program, const Variables& x, const Ev
     Multipliers right = -constraints;
     for (int j = 0; j < right.size(); ++j)
       if (right[j] > 0) right[j] *= share;
-    solution = solve({hessian, at.gradient, at.jacobian, right, low, high});
+    solution = solve({inverse_factor, at.gradient, at.jacobian, right, low, high});
     if (solution.outcome != QuadraticOutcome::infeasible) break;
   }
   return solution;
 }
 
-void update_hessian(SquareMatrix& b, const Variables& s, const Variables& y) {
-  const Variables bs = b * s;
+// The Hessian and, in product form, its inverse factor (Brodlie, Gourlay & Greenstadt 1973): no new
+// factorisation within a program.
+struct Curvature {
+  SquareMatrix& hessian;
+  SquareMatrix inverse_factor;
+
+  void update(const Variables& s, const Variables& y);
+};
+
+void Curvature::update(const Variables& s, const Variables& y) {
+  const Variables bs = hessian * s;
   const double curvature = s.dot(bs);
   if (!(curvature > 1e-14)) return;
   const double sy = s.dot(y);
   const double theta = sy >= damping * curvature ? 1 : (1 - damping) * curvature / (curvature - sy);
   const Variables r = theta * y + (1 - theta) * bs;
-  b.noalias() += r * r.transpose() / s.dot(r) - bs * bs.transpose() / curvature;
+  const double sr = s.dot(r);
+  const Variables turn = (std::sqrt(sr / curvature) * bs - r) / sr;
+  const Variables share = inverse_factor.transpose() * turn;
+  for (int j = 0; j < s.size(); ++j) {
+    hessian.col(j) += (r[j] / sr) * r - (bs[j] / curvature) * bs;
+    inverse_factor.col(j) += share[j] * s;
+  }
 }
 
-}  // namespace
-
-SqpResult minimise(const Program& program, Variables& x, SquareMatrix& hessian,
-                   const SquareMatrix& fresh_hessian, const SqpLimits& limits) {
+SqpResult minimise_free(const Program& program, Variables& x, SquareMatrix& hessian,
+                        const SquareMatrix& fresh_hessian, const SqpLimits& limits) {
   SqpResult result;
   x = x.cwiseMax(program.low).cwiseMin(program.high);
   Evaluation at;
   program.evaluate(x, at);
   Multipliers penalty = Multipliers::Zero(at.constraints.size());
+  Curvature curvature{hessian, {}};
+  if (!invert_factor(hessian, curvature.inverse_factor)) {
+    hessian = fresh_hessian;
+    if (!invert_factor(hessian, curvature.inverse_factor)) return result;
+  }
   Evaluation next;
   for (;;) {
-    QuadraticSolution step = step_from(program, x, at, hessian, at.constraints);
-    if (step.outcome == QuadraticOutcome::indefinite) {
-      hessian = fresh_hessian;
-      step = step_from(program, x, at, hessian, at.constraints);
-    }
+    const QuadraticSolution step = step_from(program, x, at, curvature.inverse_factor, at.constraints);
     result.multipliers =
         step.multipliers.size() > 0 ? step.multipliers : Multipliers(Multipliers::Zero(penalty.size()));
     result.value = at.value;
@@ -102,7 +117,7 @@ SqpResult minimise(const Program& program, Variables& x, SquareMatrix& hessian,
     const double noise = 1e-13 * (std::abs(start) + program.small_energy);
     if (merit(next, penalty) > start + sufficient_decrease * slope + noise) {
       const Multipliers corrected = next.constraints - at.jacobian * step.d;
-      const QuadraticSolution second = step_from(program, x, at, hessian, corrected);
+      const QuadraticSolution second = step_from(program, x, at, curvature.inverse_factor, corrected);
       if (second.outcome == QuadraticOutcome::solved && second.d.squaredNorm() < 4 * step.d.squaredNorm()) {
         program.evaluate(x + second.d, next);
         if (merit(next, penalty) <= start + sufficient_decrease * slope + noise) moved = second.d;
@@ -122,10 +137,24 @@ SqpResult minimise(const Program& program, Variables& x, SquareMatrix& hessian,
     }
     const Variables change =
         next.gradient - at.gradient - (next.jacobian - at.jacobian).transpose() * step.multipliers;
-    update_hessian(hessian, moved, change);
+    curvature.update(moved, change);
     x = (x + moved).cwiseMax(program.low).cwiseMin(program.high);
     std::swap(at, next);
   }
+  return result;
+}
+
+}  // namespace
+
+SqpResult minimise(const Program& program, Variables& x, SquareMatrix& hessian,
+                   const SquareMatrix& fresh_hessian, const SqpLimits& limits) {
+  const FreeProgram free(program);
+  if (free.is_whole()) return minimise_free(program, x, hessian, fresh_hessian, limits);
+  Variables free_x = free.free_of(x);
+  SquareMatrix free_hessian = free.free_of(hessian);
+  const SqpResult result = minimise_free(free, free_x, free_hessian, free.free_of(fresh_hessian), limits);
+  free.put_back(free_x, x);
+  free.put_back(free_hessian, hessian);
   return result;
 }
 

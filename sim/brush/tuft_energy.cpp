@@ -1,6 +1,7 @@
 #include "sim/brush/tuft_energy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -49,13 +50,16 @@ SquareMatrix side_hair_hessian(const Tuft& tuft, const Layout& layout) {
   for (int side = 0; side < 2; ++side) {
     for (int k = 0; k < tuft.segments; ++k) {
       // Change of slope of the side at node k; hair leaves the ferrule straight, and meets at the tip.
-      Variables change = Variables::Zero(layout.size());
       const double below = 1 / tuft.length_mm[index(k)];
       const double above = k > 0 ? 1 / tuft.length_mm[index(k - 1)] : 0;
-      if (k + 1 < tuft.segments) change[layout.stretch(k + 1, side)] = below;
-      if (k > 0) change[layout.stretch(k, side)] = -below - above;
-      if (k > 1) change[layout.stretch(k - 1, side)] = above;
-      h.noalias() += tuft.spec.side_hair_stiffness * change * change.transpose();
+      const std::array<double, 3> change = {above, -below - above, below};
+      for (int i = -1; i <= 1; ++i) {
+        for (int j = -1; j <= 1; ++j) {
+          if (k + std::min(i, j) < 1 || k + std::max(i, j) >= tuft.segments) continue;
+          h(layout.stretch(k + i, side), layout.stretch(k + j, side)) +=
+              tuft.spec.side_hair_stiffness * change[index(i + 1)] * change[index(j + 1)];
+        }
+      }
     }
   }
   return h;
@@ -97,7 +101,7 @@ TuftProgram::TuftProgram(const Tuft& tuft, const FrozenStep& frozen)
           tuft.spec.spread ? tuft.spec.spread_limit * tuft.radius_mm[index(k)] : 0;
     }
   }
-  high[layout_.yielding()] = tuft.spec.tuft_length_mm * 20;
+  high[layout_.yielding()] = frozen.plane.stands ? tuft.spec.tuft_length_mm * 20 : 0;
 
   unit = Variables::Ones(n);
   unit.tail(n - layout_.stretch(1, 0)).setConstant(tuft.spec.belly_radius_mm);

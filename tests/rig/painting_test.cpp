@@ -86,9 +86,9 @@ TEST(Replay, IsTheSamePictureInEveryBuild) {
   ReplaySettings s = settings();
   s.settle.seconds = 1;
   EXPECT_EQ(painted(gesture::session(150, 2), s).picture_sha256,
-            "dfc442863a385213cf2b1409bb733f3be4f41e500dfd5f0dd5bf1acad3d86df2");
+            "53773d46097b4e2048fbd036624357d1f2449cf3450417b4efd2e5e4cc6ce476");
   EXPECT_EQ(painted(gesture::calibrated(gesture::session(150, 2)), s).picture_sha256,
-            "a3ffb09a614241d6ede5e0635e9223872d2f7f8940246dbb027f20f59b157e54");
+            "41decfeaaa751403a1ca1f3b133f4fdc7dd000d5bdc409812f95d216dcd6d439");
 }
 
 TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {

@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
-#include "sim/brush/bench_brush.h"
+#include "sim/brush/bench_gesture.h"
 #include "sim/brush/quadratic_program.h"
 #include "sim/brush/tuft_energy.h"
 #include "sim/brush/tuft_step.h"
@@ -93,7 +94,7 @@ TEST(Sqp, AgreesWithSlsqpAlongPressDragTurnLift) {
   int compared = 0;
   int lower = 0;
   for (int f = 0; f < frames; ++f) {
-    const Pose<Paper, Handle> pose = reachable_pose(tuft, bench_pose(spec, f * step_s));
+    const Pose<Paper, Handle> pose = reachable_pose(tuft, bench_gestures()[0].pose(spec, f * step_s));
     if (f % 10 == 5) {
       TuftState trial = state;
       const FrozenStep frozen = freeze_step(tuft, trial, pose, step_s);
@@ -131,7 +132,7 @@ TEST(Sqp, CarriedHessianSavesIterations) {
   int with = 0;
   int without = 0;
   for (int f = 0; f < frames; ++f) {
-    const Pose<Paper, Handle> pose = bench_pose(spec, f * step_s);
+    const Pose<Paper, Handle> pose = bench_gestures()[0].pose(spec, f * step_s);
     with += advance(tuft, carried, pose, step_s, f == 0).iterations;
     forgetful.hessian.resize(0, 0);
     without += advance(tuft, forgetful, pose, step_s, f == 0).iterations;
@@ -143,7 +144,7 @@ TEST(Sqp, CarriedHessianSavesIterations) {
 
 TEST(QuadraticProgram, SolvesWithBoundsAndRows) {
   // ½|d|² − (2, 3)·d with d₀ + d₁ ≤ 2 and d₁ ≤ 1.2: the corner (0.8, 1.2), multiplier of the row 1.2.
-  const SquareMatrix hessian = SquareMatrix::Identity(2, 2);
+  const SquareMatrix inverse_factor = SquareMatrix::Identity(2, 2);
   Variables gradient(2);
   gradient << -2, -3;
   Jacobian rows(1, 2);
@@ -153,7 +154,7 @@ TEST(QuadraticProgram, SolvesWithBoundsAndRows) {
   Variables low = Variables::Constant(2, -10);
   Variables high(2);
   high << 10, 1.2;
-  const QuadraticSolution s = solve({hessian, gradient, rows, right, low, high});
+  const QuadraticSolution s = solve({inverse_factor, gradient, rows, right, low, high});
   ASSERT_EQ(s.outcome, QuadraticOutcome::solved);
   EXPECT_NEAR(s.d[0], 0.8, 1e-12);
   EXPECT_NEAR(s.d[1], 1.2, 1e-12);
@@ -161,7 +162,7 @@ TEST(QuadraticProgram, SolvesWithBoundsAndRows) {
 }
 
 TEST(QuadraticProgram, SaysWhenThereIsNoSolution) {
-  SquareMatrix hessian = SquareMatrix::Identity(2, 2);
+  const SquareMatrix inverse_factor = SquareMatrix::Identity(2, 2);
   const Variables gradient = Variables::Zero(2);
   Jacobian rows(1, 2);
   rows << 1, 1;
@@ -169,10 +170,64 @@ TEST(QuadraticProgram, SaysWhenThereIsNoSolution) {
   right << 5;
   const Variables low = Variables::Constant(2, -1);
   const Variables high = Variables::Constant(2, 1);
-  EXPECT_EQ(solve({hessian, gradient, rows, right, low, high}).outcome, QuadraticOutcome::infeasible);
+  EXPECT_EQ(solve({inverse_factor, gradient, rows, right, low, high}).outcome, QuadraticOutcome::infeasible);
+}
+
+TEST(QuadraticProgram, TakesAHessianThatIsPositiveDefinite) {
+  SquareMatrix hessian(3, 3);
+  hessian << 4, 1, -0.5, 1, 3, 0.2, -0.5, 0.2, 2;
+  SquareMatrix z;
+  ASSERT_TRUE(invert_factor(hessian, z));
+  EXPECT_LT((z.transpose() * hessian * z - SquareMatrix::Identity(3, 3)).cwiseAbs().maxCoeff(), 1e-14);
   hessian(1, 1) = -1;
-  right[0] = 0;
-  EXPECT_EQ(solve({hessian, gradient, rows, right, low, high}).outcome, QuadraticOutcome::indefinite);
+  EXPECT_FALSE(invert_factor(hessian, z));
+  hessian(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(invert_factor(hessian, z));
+}
+
+// ½ (x − c)ᵀ A (x − c) with A of three unknowns coupled, and x₀ + x₂ ≥ 2.
+class Coupled : public Program {
+ public:
+  Coupled() {
+    low = Variables::Constant(3, -10);
+    high = Variables::Constant(3, 10);
+    unit = Variables::Ones(3);
+    small_energy = small_gradient = small_violation = 1e-9;
+    curvature << 4, 1, -0.5, 1, 3, 0.2, -0.5, 0.2, 2;
+  }
+  void evaluate(const Variables& x, Evaluation& at) const override {
+    const Eigen::Vector3d off = Eigen::Vector3d(x) - Eigen::Vector3d(1, -2, 0.5);
+    at.value = 0.5 * off.dot(curvature * off);
+    at.gradient = curvature * off;
+    at.constraints = Multipliers::Constant(1, x[0] + x[2] - 2);
+    at.jacobian = Jacobian::Zero(1, 3);
+    at.jacobian(0, 0) = at.jacobian(0, 2) = 1;
+  }
+  Eigen::Matrix3d curvature;
+};
+
+TEST(Sqp, AnUnknownWithoutRoomIsHeldAndTheHessianStaysSound) {
+  Coupled program;
+  program.low[1] = program.high[1] = 0.25;
+  Variables x = Variables::Zero(3);
+  SquareMatrix hessian = program.curvature;
+  const SqpResult held = minimise(program, x, hessian, SquareMatrix::Identity(3, 3), SqpLimits{});
+  ASSERT_TRUE(held.converged);
+  EXPECT_EQ(x[1], 0.25);
+  // Of x₀ and x₂ = 2 − x₀ alone: the derivative along (1, 0, −1) is zero.
+  Evaluation at;
+  program.evaluate(x, at);
+  EXPECT_NEAR(at.constraints[0], 0, 1e-9);
+  EXPECT_NEAR(at.gradient[0] - at.gradient[2], 0, 1e-6);
+  EXPECT_NEAR(held.multipliers[0], at.gradient[0], 1e-6);
+  // Free again, it goes on from the Hessian that was left.
+  SquareMatrix factor;
+  ASSERT_TRUE(invert_factor(hessian, factor));
+  program.low[1] = -10;
+  program.high[1] = 10;
+  ASSERT_TRUE(minimise(program, x, hessian, SquareMatrix::Identity(3, 3), SqpLimits{}).converged);
+  program.evaluate(x, at);
+  EXPECT_NEAR(at.gradient[1], 0, 1e-5);
 }
 
 }  // namespace
