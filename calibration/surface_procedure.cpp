@@ -269,6 +269,11 @@ Calibration<SurfaceCalibration> SurfaceProcedure::finish() const {
   if (!parts.empty())
     report.warnings.push_back("the tip never was at the " + listed(parts) +
                               ": there the sheet is a guess that may be off by millimetres; touch there too");
+  if (const auto spacing = grid_spacing(on_sheet); spacing && one.curved && !wiped)
+    report.warnings.push_back("the touches stand in rows and columns, " + in_words(spacing->x(), 0) +
+                              " and " + in_words(spacing->y(), 0) +
+                              " mm apart: waves as short as that would look like long ones; if the sheet may "
+                              "have them, touch between the rows too");
   if (!outliers.empty())
     report.warnings.push_back(std::to_string(outliers.size()) +
                               " touches are off the surface and were left out");

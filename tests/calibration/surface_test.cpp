@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -347,6 +348,38 @@ TEST(Surface, ProgressCountsThePlacesWhereTheTipRested) {
   EXPECT_EQ(whole.covered, 1);
   EXPECT_TRUE(whole.missing.empty());
   EXPECT_EQ(never.covered, 0);
+}
+
+// Four and a half waves by five columns look like half a wave: nothing in the touches tells, but how they
+// stand.
+TEST(Surface, WavesAsShortAsTheGridAreWarnedOf) {
+  const auto warned = [](const Calibration<SurfaceCalibration>& found) {
+    return std::ranges::any_of(found->report.warnings, [](const std::string& w) {
+      return w.find("touch between the rows too") != std::string::npos;
+    });
+  };
+  const ScriptedSheet cockled{
+      .height_mm = [](double x, double) { return 5 * std::cos(4.5 * 2 * std::numbers::pi * x / 420); }};
+  const auto aliased = surface_of(cockled.samples(1), cockled.tip_m, true);
+  ASSERT_TRUE(aliased) << aliased.error().reason;
+  EXPECT_GT(cockled.rms_against_truth_mm(aliased->value), 2);
+  EXPECT_TRUE(warned(aliased));
+
+  // The same number of touches, every other column half a row lower: then the waves show.
+  SurfaceProcedure procedure(cockled.tip_m);
+  ScriptedSheet bowed{.height_mm = bow};
+  Noise noise(2);
+  double t = 0;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 5; ++j)
+      for (int k = 0; k < 15; ++k, t += 0.02)
+        procedure.add(bowed.holding(
+            bowed.point_m(52.5 * i, std::min(297.0, 59.0 * j + (i % 2 ? 30 : 0)), noise.normal(0.02)), noise,
+            t));
+  const auto staggered = procedure.finish();
+  ASSERT_TRUE(staggered) << staggered.error().reason;
+  EXPECT_TRUE(staggered->value.sheet);
+  EXPECT_FALSE(warned(staggered));
 }
 
 }  // namespace
