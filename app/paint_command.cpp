@@ -3,6 +3,8 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/painting_options.h"
@@ -27,6 +29,17 @@ Result<std::vector<ScriptedEvent>> load_script(const std::string& file) {
   return read_script(text.str(), file);
 }
 
+// Those that are kept, and after them, as a later one counts, those by which the sheet was painted so far.
+std::vector<StoredCalibration> calibrations_for_the_hand(const std::optional<Session>& before) {
+  std::vector<std::string> unreadable;
+  auto calibrations = calibrations_of_user(unreadable);
+  if (before)
+    for (const RecordedCalibration& carried : before->calibrations)
+      if (auto calibration = calibration_from_toml(carried.toml, carried.name))
+        calibrations.push_back(std::move(*calibration));
+  return calibrations;
+}
+
 Result<void> run(const Options& options) {
   StudioSetup setup;
   if (!options.session.empty()) {
@@ -46,10 +59,6 @@ Result<void> run(const Options& options) {
   auto settings = options.painting.settings(recorded);
   if (!settings) return tl::unexpected(settings.error());
   setup.settings = std::move(*settings);
-  if (options.painting.calibrations.empty() && !setup.played) {
-    std::vector<std::string> unreadable;
-    setup.settings.wish.calibrations = calibrations_of_user(unreadable);
-  }
   if (before) {
     const ProgressLine line("painting what was there");
     auto sheet = painted_sheet(*before, setup.settings, [&](double share) { line.show(share); });
@@ -62,6 +71,8 @@ Result<void> run(const Options& options) {
     if (!sheet) return tl::unexpected(sheet.error());
     setup.sheet = std::move(*sheet);
   }
+  if (options.painting.calibrations.empty() && !setup.played)
+    setup.settings.wish.calibrations = calibrations_for_the_hand(before);
   if (!options.script.empty()) {
     auto script = load_script(options.script);
     if (!script) return tl::unexpected(script.error());

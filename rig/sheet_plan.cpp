@@ -37,6 +37,13 @@ CountsBox covered(const Session& session, DeviceNumber device) {
 
 }  // namespace
 
+DeviceDescription sized(DeviceDescription device, const std::optional<Extent>& told) {
+  if (!told || active_area(device) || device.mm_per_count) return device;
+  device.width = told->width;
+  device.height = told->height;
+  return device;
+}
+
 Result<TabletMapping> mapping_on(const SheetPlan& plan, const DeviceDescription& device) {
   if (auto surface = surface_of(plan.calibrated, device)) return mapping_by(std::move(surface), plan.sheet);
   return mapping_for(device, plan.sheet);
@@ -55,10 +62,7 @@ Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
   std::vector<RecordedDevice> painters;
   for (RecordedDevice device : session.devices) {
     if (!covered(session, device.number).any) continue;
-    if (wish.tablet && !active_area(device.description) && !device.description.mm_per_count) {
-      device.description.width = wish.tablet->width;
-      device.description.height = wish.tablet->height;
-    }
+    device.description = sized(std::move(device.description), wish.tablet);
     painters.push_back(std::move(device));
   }
 

@@ -31,6 +31,9 @@ struct SheetWish {
 // devices is its; those of calibrated_tablets.
 Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish);
 
+// The device, with the size that was told for one that does not state its own.
+DeviceDescription sized(DeviceDescription device, const std::optional<Extent>& told);
+
 // Of a device that comes while it is painted: by its calibration, else as mapping_for() has it.
 Result<TabletMapping> mapping_on(const SheetPlan& plan, const DeviceDescription& device);
 

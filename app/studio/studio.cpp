@@ -31,11 +31,12 @@ Timestamp now() {
 }
 
 // The largest tablet that is there, as a replay will have it; else A5.
-Extent sheet_for_the_hand(const std::vector<CalibratedTablet>& calibrated) {
+Extent sheet_for_the_hand(const std::vector<CalibratedTablet>& calibrated,
+                          const std::optional<Extent>& told) {
   Extent sheet;
   if (const auto found = attached_devices())
     for (const AttachedDevice& tablet : *found)
-      if (const auto area = area_of(calibrated, tablet.description); area && tablet.access) {
+      if (const auto area = area_of(calibrated, sized(tablet.description, told)); area && tablet.access) {
         sheet.width = std::max(sheet.width, area->width);
         sheet.height = std::max(sheet.height, area->height);
       }
@@ -123,7 +124,9 @@ class Studio {
   // Their readers hand samples to the painting on their own threads. Without udev there is the mouse.
   void listen_to_tablets(Recorder* recorder) {
     DeviceListener listener;
-    listener.appeared = [this, recorder](std::size_t, const DeviceDescription& description) {
+    // With the size that was told: so a replay has it too.
+    listener.appeared = [this, recorder](std::size_t, const DeviceDescription& stated) {
+      const DeviceDescription description = sized(stated, setup_.settings.wish.tablet);
       const auto mapping = mapping_on(plan_, description);
       const std::lock_guard lock(tablets_mutex_);
       if (recorder) {
@@ -352,7 +355,7 @@ Result<void> run_studio(const StudioSetup& setup) {
   if (!setup.played && !wish.sheet) {
     const auto calibrated = calibrated_tablets(wish.calibrations);
     if (!calibrated) return tl::unexpected(calibrated.error());
-    wish.sheet = sheet_for_the_hand(*calibrated);
+    wish.sheet = sheet_for_the_hand(*calibrated, wish.tablet);
   }
   const auto plan = plan_sheet(setup.played ? *setup.played : blank, wish);
   if (!plan) return tl::unexpected(plan.error());

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 
 namespace fude {
 namespace {
@@ -137,6 +137,17 @@ TEST(SheetPlan, ATabletThatComesLaterIsMappedByItsCalibration) {
   const SheetPlan plan = plan_sheet(Session{}, {.calibrations = {taps_on("056a:0001:A", 1000)}}).value();
   EXPECT_TRUE(mapping_on(plan, calibrated_tablet().devices[0].description).value().surface);
   EXPECT_FALSE(mapping_on(plan, tablet().devices[0].description).value().surface);
+}
+
+TEST(SheetPlan, ASizeIsToldOnlyToADeviceThatStatesNone) {
+  const Extent told{Millimetres(200), Millimetres(120)};
+  EXPECT_EQ(sized({.name = "silent"}, told).width->value, 200);
+  EXPECT_FALSE(sized({.name = "silent"}, std::nullopt).width);
+  DeviceDescription stated{.name = "stated"};
+  stated.width = Millimetres(300);
+  stated.height = Millimetres(180);
+  stated.mm_per_count = 0.005;
+  EXPECT_EQ(sized(stated, told).width->value, 300);
 }
 
 }  // namespace
