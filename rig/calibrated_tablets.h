@@ -8,7 +8,7 @@
 
 #include "calibration/pen_mapping.h"
 #include "calibration/tablet_surface.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "signal/device.h"
 #include "signal/result.h"
 

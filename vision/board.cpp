@@ -118,28 +118,51 @@ class CornerGrid {
   int columns_, rows_;
 };
 
-// How much brighter odd squares are than even ones, from first_x to last_x and first_y to last_y: the square
-// between corners (0, 0) and (1, 1) is even. 0 where the picture does not show both sorts.
-double contrast(const cv::Mat& picture, const CornerGrid& grid, int first_x, int last_x, int first_y,
-                int last_y) {
-  double sum[2] = {}, count[2] = {};
+// Squares of a part of the grid: the square between corners (0, 0) and (1, 1) is even.
+struct Square {
+  bool odd = false;
+  double grey = 0;
+};
+std::vector<Square> squares_of(const cv::Mat& picture, const CornerGrid& grid, int first_x, int last_x,
+                               int first_y, int last_y) {
+  std::vector<Square> squares;
   for (int y = first_y; y <= last_y; ++y)
     for (int x = first_x; x <= last_x; ++x)
-      if (const auto grey = grey_at(picture, grid.middle(x, y))) {
-        const int odd = std::abs(x + y) % 2;
-        sum[odd] += *grey;
-        ++count[odd];
-      }
-  return count[0] > 0 && count[1] > 0 ? sum[1] / count[1] - sum[0] / count[0] : 0;
+      if (const auto grey = grey_at(picture, grid.middle(x, y)))
+        squares.push_back({std::abs(x + y) % 2 == 1, *grey});
+  return squares;
 }
 
-// Squares beyond the outermost that were named, where a board has its rim.
-bool board_goes_on(const cv::Mat& picture, const CornerGrid& grid, const Board& board, double inside) {
+// Mean greys of the even and of the odd ones.
+struct Shades {
+  double even = 0, odd = 0;
+  double middle() const { return (even + odd) / 2; }
+  bool odd_are_brighter() const { return odd > even; }
+};
+Shades shades_of(const std::vector<Square>& squares) {
+  double sum[2] = {}, count[2] = {};
+  for (const Square& square : squares) {
+    sum[square.odd] += square.grey;
+    ++count[square.odd];
+  }
+  return {sum[0] / std::max(1.0, count[0]), sum[1] / std::max(1.0, count[1])};
+}
+
+// Squares beyond the outermost that were named, where a board has its rim. A table may look like some of
+// them, hardly like all.
+bool board_goes_on(const cv::Mat& picture, const CornerGrid& grid, const Board& board, const Shades& inside) {
   const int right = board.columns, below = board.rows;
-  const double beyond[] = {
-      contrast(picture, grid, -2, -2, 0, below - 2), contrast(picture, grid, right, right, 0, below - 2),
-      contrast(picture, grid, 0, right - 2, -2, -2), contrast(picture, grid, 0, right - 2, below, below)};
-  return std::ranges::any_of(beyond, [&](double side) { return std::abs(side) > 0.5 * std::abs(inside); });
+  const std::vector<Square> beyond[] = {
+      squares_of(picture, grid, -2, -2, 0, below - 2), squares_of(picture, grid, right, right, 0, below - 2),
+      squares_of(picture, grid, 0, right - 2, -2, -2), squares_of(picture, grid, 0, right - 2, below, below)};
+  return std::ranges::any_of(beyond, [&](const std::vector<Square>& side) {
+    const auto continued = std::ranges::count_if(side, [&](const Square& square) {
+      const bool bright = square.grey > inside.middle();
+      return bright == (square.odd == inside.odd_are_brighter());
+    });
+    const auto seen = static_cast<std::ptrdiff_t>(side.size());
+    return seen >= 3 && continued >= seen - seen / 6;
+  });
 }
 
 std::vector<cv::Point2f> charuco_corners(const cv::Mat& picture, const Board& board,
@@ -219,9 +242,9 @@ std::optional<BoardView> find_board(const GreyImage& image, const Board& board) 
     refine(picture, corners);
     if (board.kind == BoardKind::chessboard) {
       const CornerGrid grid(corners, board.columns, board.rows);
-      const double inside = contrast(picture, grid, 0, board.columns - 2, 0, board.rows - 2);
+      const Shades inside = shades_of(squares_of(picture, grid, 0, board.columns - 2, 0, board.rows - 2));
       view.goes_on = board_goes_on(picture, grid, board, inside);
-      if (has_one_way_up(board) && inside < 0) std::ranges::reverse(corners);
+      if (has_one_way_up(board) && !inside.odd_are_brighter()) std::ranges::reverse(corners);
     }
   } catch (const cv::Exception&) {
     return std::nullopt;  // OpenCV's own checks of what a hostile picture showed

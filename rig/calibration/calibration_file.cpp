@@ -1,4 +1,4 @@
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 
 #include <toml++/toml.h>
 

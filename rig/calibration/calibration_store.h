@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "signal/result.h"
 
 namespace fude {

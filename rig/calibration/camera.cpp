@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "rig/calibration/shown_pictures.h"
-#include "rig/calibration/stream_choice.h"
 #include "vision/camera_calibration.h"
 
 namespace fude {
@@ -64,41 +62,35 @@ CalibrationReport report_of(const CameraCalibration& found) {
 class CameraCalibrator final : public Calibrator {
  public:
   CameraCalibrator(const std::string& camera, CameraProcedure procedure)
-      : camera_({.name = camera, .what = "camera", .kinds = is_kind<CameraFrame>}),
-        procedure_(std::move(procedure)) {}
+      : pictures_(camera), procedure_(std::move(procedure)) {}
 
   void begin(DeviceNumber device, const DeviceDescription& description) override {
-    camera_.begin(device, description);
+    pictures_.begin(device, description);
   }
 
   Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer* picture) override {
-    const auto mine = camera_.takes(device, sample);
-    if (!mine) return tl::unexpected(mine.error());
-    if (!*mine) return progress_;
-    if (const auto shown = pictures_.next(std::get<CameraFrame>(sample), picture)) {
-      const CameraProcedure::Progress progress = procedure_.add(shown->image, shown->name);
+    const auto shown = pictures_.hear(device, sample, picture);
+    if (!shown) return tl::unexpected(shown.error());
+    if (*shown) {
+      const CameraProcedure::Progress progress = procedure_.add((*shown)->image, (*shown)->name);
       progress_ = {progress.views, progress.covered, progress.missing};
     }
     return progress_;
   }
 
   Result<CalibrationOutcome> finish() override {
-    const auto camera = camera_.found();
-    if (!camera) return tl::unexpected(camera.error());
+    if (const auto camera = pictures_.found(); !camera) return tl::unexpected(camera.error());
     const CameraCalibration found = procedure_.finish();
     CalibrationOutcome outcome{report_of(found), std::nullopt};
-    outcome.report.devices = {camera->device.id};
-    const auto& damaged = pictures_.damaged();
-    outcome.report.warnings.insert(outcome.report.warnings.end(), damaged.begin(), damaged.end());
+    pictures_.sign(outcome.report);
     if (found.accepted) outcome.result = fields_of(found);
     return outcome;
   }
 
  private:
-  StreamChoice camera_;
+  ShownPictures pictures_;
   CameraProcedure procedure_;
   Progress progress_;
-  ShownPictures pictures_;
 };
 
 }  // namespace

@@ -1,22 +1,16 @@
 #include "rig/calibration/camera_pose.h"
 
-#include <numbers>
+#include <cmath>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "calibration/pose_fields.h"
 #include "rig/calibration/camera.h"
 #include "rig/calibration/shown_pictures.h"
-#include "rig/calibration/stream_choice.h"
 #include "vision/camera_pose.h"
 
 namespace fude {
 namespace {
-
-Pose<Paper, BoardFrame> place_of(const LyingAt& at) {
-  return lying_at(1e-3 * at.x_mm, 1e-3 * at.y_mm, at.turn_deg * std::numbers::pi / 180);
-}
 
 CalibrationReport report_of(const CameraPlacement& found) {
   CalibrationReport report;
@@ -42,39 +36,51 @@ CalibrationReport report_of(const CameraPlacement& found) {
   return report;
 }
 
+// The corners put the board wrong as a whole, beside what the picture does.
+void add_place(CalibrationReport& report, const BoardPlace& board) {
+  if (!board.by_corners) return;
+  report.detail("board_corners_rms_mm", board.by_corners->rms);
+  report.detail("board_ci95_mm", board.radius95_mm);
+  const auto& warnings = board.by_corners->warnings;
+  for (const std::string& warning : warnings) report.warnings.push_back("the board's corners: " + warning);
+  if (report.ci95) (*report.ci95)[1] = std::hypot((*report.ci95)[1], board.radius95_mm);
+  constexpr double widest_mm = 2;  // as of the picture alone
+  if (!report.accepted) return;
+  report.reason = "places on the paper under the board are known to within " + in_words((*report.ci95)[1]) +
+                  " mm (95 %), " + in_words(board.radius95_mm) + " mm of it by its corners";
+  if ((*report.ci95)[1] < widest_mm) return;
+  report.accepted = false;
+  report.reason += ": touch the four corners more carefully, and with a tip that was calibrated well";
+}
+
 class CameraPoseCalibrator final : public Calibrator {
  public:
-  CameraPoseCalibrator(CameraPoseWish wish, KnownCalibrations known)
-      : wish_(std::move(wish)),
-        known_(std::move(known)),
-        camera_({.name = wish_.camera, .what = "camera", .kinds = is_kind<CameraFrame>}) {}
+  CameraPoseCalibrator(const CameraPoseWish& wish, BoardPlace place, KnownCalibrations known)
+      : board_(wish.board), place_(std::move(place)), known_(std::move(known)), pictures_(wish.camera) {}
 
   void begin(DeviceNumber device, const DeviceDescription& description) override {
-    camera_.begin(device, description);
+    pictures_.begin(device, description);
   }
 
   Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer* picture) override {
-    const auto mine = camera_.takes(device, sample);
-    if (!mine) return tl::unexpected(mine.error());
-    if (!*mine) return progress_;
-    if (!procedure_)
+    const auto shown = pictures_.hear(device, sample, picture);
+    if (!shown) return tl::unexpected(shown.error());
+    if (!procedure_ && pictures_.camera())
       if (const auto ready = take_lens(); !ready) return tl::unexpected(ready.error());
-    if (const auto shown = pictures_.next(std::get<CameraFrame>(sample), picture)) {
-      const auto progress = procedure_->add(shown->image, shown->name);
+    if (*shown) {
+      const auto progress = procedure_->add((*shown)->image, (*shown)->name);
       progress_ = {progress.pictures, progress.missing.empty() ? 1.0 : 0.0, progress.missing};
     }
     return progress_;
   }
 
   Result<CalibrationOutcome> finish() override {
-    const auto camera = camera_.found();
-    if (!camera) return tl::unexpected(camera.error());
+    if (const auto camera = pictures_.found(); !camera) return tl::unexpected(camera.error());
     const CameraPlacement found = procedure_->finish();
     CalibrationOutcome outcome{report_of(found), std::nullopt};
-    outcome.report.devices = {camera->device.id};
-    const auto& damaged = pictures_.damaged();
-    outcome.report.warnings.insert(outcome.report.warnings.end(), damaged.begin(), damaged.end());
-    if (!found.accepted) return outcome;
+    add_place(outcome.report, place_);
+    pictures_.sign(outcome.report);
+    if (!outcome.report.accepted) return outcome;
     outcome.result.emplace();
     put_pose(*outcome.result, "paper_from_camera", found.paper_from_camera);
     return outcome;
@@ -82,22 +88,22 @@ class CameraPoseCalibrator final : public Calibrator {
 
  private:
   Result<void> take_lens() {
-    const auto known = known_.find("camera", *camera_.chosen());
+    const auto known = known_.find("camera", *pictures_.camera());
     if (!known) return tl::unexpected(known.error());
     const auto lens = *known ? camera_from((*known)->result) : std::nullopt;
     if (!lens)
       return failure(
           Fault::usage,
           "camera-pose needs the camera's lens: fude calibrate camera first, and give --cal CAMERA.toml");
-    auto procedure = CameraPoseProcedure::begin(wish_.board, *lens, place_of(wish_.lying_at));
+    auto procedure = CameraPoseProcedure::begin(board_, *lens, place_.paper_from_board);
     if (!procedure) return tl::unexpected(procedure.error());
     procedure_.emplace(std::move(*procedure));
     return {};
   }
 
-  CameraPoseWish wish_;
+  Board board_;
+  BoardPlace place_;
   KnownCalibrations known_;
-  StreamChoice camera_;
   ShownPictures pictures_;
   std::optional<CameraPoseProcedure> procedure_;  // from the first frame on, when the lens is known
   Progress progress_;
@@ -107,9 +113,11 @@ class CameraPoseCalibrator final : public Calibrator {
 
 Result<std::unique_ptr<Calibrator>> camera_pose_calibrator(const CameraPoseWish& wish,
                                                            KnownCalibrations known) {
-  if (const auto possible = CameraPoseProcedure::begin(wish.board, {}, place_of(wish.lying_at)); !possible)
+  if (const auto possible = CameraPoseProcedure::begin(wish.board, {}, {}); !possible)
     return tl::unexpected(possible.error());
-  return std::make_unique<CameraPoseCalibrator>(wish, std::move(known));
+  auto place = place_of(wish.board, wish.at, known);
+  if (!place) return tl::unexpected(place.error());
+  return std::make_unique<CameraPoseCalibrator>(wish, std::move(*place), std::move(known));
 }
 
 }  // namespace fude

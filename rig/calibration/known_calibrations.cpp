@@ -4,39 +4,20 @@
 #include <utility>
 
 #include "calibration/pivot.h"
+#include "rig/calibration/made_with.h"
 
 namespace fude {
 namespace {
 
-// A table of numbers does not say what it was measured with.
-bool anonymous(std::string_view device) { return device.empty() || device.starts_with("text:"); }
-
-struct Sought {
-  const ChosenStream& stream;
-  const std::string& reference;
-};
-
-// What speaks against it; empty where nothing does.
-std::string made_with_other(const CalibrationReport& report, const Sought& sought) {
-  const ChosenStream& stream = sought.stream;
-  const auto& devices = report.devices;
-  if (!anonymous(stream.device.id) && !devices.empty() &&
-      std::ranges::none_of(devices, [&](const std::string& device) {
-        return anonymous(device) || device == stream.device.id;
-      }))
-    return "with the device " + devices.front() + " and not with " + stream.device.id;
-  if (!report.tool.empty() && !stream.part.empty() && report.tool != stream.part)
-    return "of the tool " + report.tool + " and not of " + stream.part;
-  if (report.reference != sought.reference)
-    return report.reference.empty() ? "without the reference " + sought.reference
-                                    : "with --reference " + report.reference;
-  return {};
+CalibratedHere here(const ChosenStream& stream, const std::string& reference) {
+  return {{stream.device.id}, stream.part, reference};
 }
 
-bool just_of(const CalibrationReport& report, const Sought& sought) {
-  return made_with_other(report, sought).empty() && !anonymous(sought.stream.device.id) &&
-         (report.tool.empty() || report.tool == sought.stream.part) &&
-         std::ranges::find(report.devices, sought.stream.device.id) != report.devices.end();
+// As one that is kept must be.
+bool just_of(const CalibrationReport& report, const ChosenStream& stream, const std::string& reference) {
+  return made_otherwise(report, here(stream, reference)).empty() && !may_be_any(stream.device.id) &&
+         (report.tool.empty() || report.tool == stream.part) &&
+         std::ranges::find(report.devices, stream.device.id) != report.devices.end();
 }
 
 std::string named(const ChosenStream& tool) {
@@ -66,21 +47,21 @@ void KnownCalibrations::keep(std::vector<StoredCalibration> current) { kept_ = s
 Result<std::optional<StoredCalibration>> KnownCalibrations::find(std::string_view procedure,
                                                                  const ChosenStream& stream,
                                                                  const std::string& reference) const {
-  const Sought sought{stream, reference};
+  const CalibratedHere sought = here(stream, reference);
   std::optional<Error> other;
   for (const Named& named : named_) {
     if (named.calibration.report.procedure != procedure) continue;
-    const std::string against = made_with_other(named.calibration.report, sought);
+    const std::string against = made_otherwise(named.calibration.report, sought);
     if (against.empty()) return named.calibration;
     other = Error{Fault::malformed, named.file + " was made " + against + "; calibrate this one"};
   }
   if (other) return tl::unexpected(*other);
   const auto carried = std::find_if(carried_.rbegin(), carried_.rend(), [&](const StoredCalibration& c) {
-    return c.report.procedure == procedure && made_with_other(c.report, sought).empty();
+    return c.report.procedure == procedure && made_otherwise(c.report, sought).empty();
   });
   if (carried != carried_.rend()) return *carried;
   const auto kept = std::ranges::find_if(kept_, [&](const StoredCalibration& c) {
-    return c.report.procedure == procedure && just_of(c.report, sought);
+    return c.report.procedure == procedure && just_of(c.report, stream, reference);
   });
   if (kept != kept_.end()) return *kept;
   return std::nullopt;

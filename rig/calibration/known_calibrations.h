@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "capture/session.h"
+#include "rig/calibration/calibration_file.h"
 #include "rig/calibration/stream_choice.h"
-#include "rig/calibration_file.h"
 #include "signal/result.h"
 
 namespace fude {

@@ -1,4 +1,4 @@
-#include "rig/landmark_file.h"
+#include "rig/calibration/landmark_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "rig/calibration/calibration_file.h"
 #include "rig/calibration/calibrator.h"
 #include "rig/calibration/live_hearing.h"
-#include "rig/calibration_file.h"
 #include "rig/devices.h"
 #include "rig/record_session.h"
 #include "signal/result.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/session.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "signal/device.h"
 
 namespace fude {

@@ -1,10 +1,8 @@
 #include "rig/calibration/pivot.h"
 
 #include <utility>
-#include <variant>
 
 #include "calibration/pivot.h"
-#include "rig/calibration/session_inputs.h"
 #include "rig/calibration/undistortion.h"
 
 namespace fude {
@@ -44,17 +42,11 @@ class PivotCalibrator final : public Calibrator {
     if (!session) return tl::unexpected(session.error());
     procedure_.begin_spin();
     ToolPoses poses(wish_.tool);
-    Undistortion undistortion(known_);
-    for (const RecordedDevice& device : session->devices) {
-      poses.begin(device.number, device.description);
-      undistortion.begin(device.number, device.description);
-    }
-    auto heard = for_each_input(
-        *session, [&](DeviceNumber device, const Sample& sample, const Transfer*) -> Result<void> {
-          const auto* pose = std::get_if<PoseSample>(&sample);
-          if (pose == nullptr) return {};
-          return add(poses.hear(device, undistortion.straight(device, *pose))).map([](const Progress&) {});
-        });
+    for (const RecordedDevice& device : session->devices) poses.begin(device.number, device.description);
+    auto heard = for_each_straight_pose(*session, known_,
+                                        [&](DeviceNumber device, const PoseSample& pose) -> Result<void> {
+                                          return add(poses.hear(device, pose)).map([](const Progress&) {});
+                                        });
     if (!heard) return heard;
     return add(poses.rest()).map([](const Progress&) {});
   }

@@ -8,47 +8,16 @@
 #include <sstream>
 #include <utility>
 
-#include "rig/calibration/stream_choice.h"
+#include "rig/calibration/stream_calibrator.h"
 
 namespace fude {
-namespace {
-
-class PressureCalibrator final : public Calibrator {
- public:
-  explicit PressureCalibrator(PressureWish wish)
-      : tablet_({.name = std::move(wish.tablet), .what = "tablet", .kinds = is_kind<PenSample>}),
-        procedure_(std::move(wish.weighings)) {}
-
-  void begin(DeviceNumber device, const DeviceDescription& description) override {
-    tablet_.begin(device, description);
-  }
-
-  Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer*) override {
-    const auto mine = tablet_.takes(device, sample);
-    if (!mine) return tl::unexpected(mine.error());
-    if (*mine) progress_ = procedure_.add(std::get<PenSample>(sample));
-    return progress_;
-  }
-
-  Result<CalibrationOutcome> finish() override {
-    const auto tablet = tablet_.found();
-    if (!tablet) return tl::unexpected(tablet.error());
-    auto outcome = outcome_of(procedure_.finish());
-    outcome.report.devices = {tablet->device.id};
-    outcome.report.from_frame = "pressure of " + tablet->device.name;
-    return outcome;
-  }
-
- private:
-  StreamChoice tablet_;
-  PressureProcedure procedure_;
-  Progress progress_;
-};
-
-}  // namespace
 
 std::unique_ptr<Calibrator> pressure_calibrator(PressureWish wish) {
-  return std::make_unique<PressureCalibrator>(std::move(wish));
+  return std::make_unique<StreamCalibrator<PenSample, PressureProcedure>>(
+      std::move(wish.tablet), "tablet", PressureProcedure(std::move(wish.weighings)),
+      [](CalibrationOutcome& outcome, const DeviceDescription& tablet) {
+        outcome.report.from_frame = "pressure of " + tablet.name;
+      });
 }
 
 Result<std::vector<Weighing>> weighings_from(std::string_view text, const std::string& source) {

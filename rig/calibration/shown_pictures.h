@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "signal/camera_frame.h"
+#include "calibration/report.h"
+#include "rig/calibration/stream_choice.h"
 #include "signal/grey_image.h"
+#include "signal/result.h"
+#include "signal/sample.h"
 #include "signal/transfer.h"
 
 namespace fude {
@@ -18,12 +21,28 @@ struct ShownPicture {
 
 class ShownPictures {
  public:
-  // None where its bytes are not there or are damaged; that is told in damaged().
-  std::optional<ShownPicture> next(const CameraFrame& frame, const Transfer* picture);
+  explicit ShownPictures(const std::string& camera)  // empty: the only one
+      : camera_({.name = camera, .what = "camera", .kinds = is_kind<CameraFrame>}) {}
 
-  const std::vector<std::string>& damaged() const { return damaged_; }
+  void begin(DeviceNumber device, const DeviceDescription& description) {
+    camera_.begin(device, description);
+  }
+
+  // None where it is no frame of that camera, or its bytes are not there or are damaged. Errors: as
+  // StreamChoice::takes.
+  Result<std::optional<ShownPicture>> hear(DeviceNumber device, const Sample& sample,
+                                           const Transfer* picture);
+
+  // None before the first frame.
+  const std::optional<ChosenStream>& camera() const { return camera_.chosen(); }
+  // Errors: not_found where there was none.
+  Result<ChosenStream> found() const { return camera_.found(); }
+
+  // Whose the report is, and a warning for each damaged picture.
+  void sign(CalibrationReport& report) const;
 
  private:
+  StreamChoice camera_;
   std::size_t count_ = 0;
   std::vector<std::string> damaged_;
 };

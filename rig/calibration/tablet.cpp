@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "calibration/pen_mapping.h"
-#include "rig/calibration/stream_choice.h"
-#include "rig/landmark_file.h"
+#include "rig/calibration/landmark_file.h"
+#include "rig/calibration/stream_calibrator.h"
 
 namespace fude {
 namespace {
@@ -26,43 +26,16 @@ void compare_with_stated_size(CalibrationReport& report, const DeviceDescription
                             " wide, " + percent(higher) + " high): is --sheet-mm as printed or shown?");
 }
 
-class TabletCalibrator final : public Calibrator {
- public:
-  explicit TabletCalibrator(TabletWish wish)
-      : tablet_({.name = std::move(wish.tablet), .what = "tablet", .kinds = is_kind<PenSample>}),
-        procedure_(std::move(wish.sheet)) {}
-
-  void begin(DeviceNumber device, const DeviceDescription& description) override {
-    tablet_.begin(device, description);
-  }
-
-  Result<Progress> hear(DeviceNumber device, const Sample& sample, const Transfer*) override {
-    const auto mine = tablet_.takes(device, sample);
-    if (!mine) return tl::unexpected(mine.error());
-    if (*mine) progress_ = procedure_.add(std::get<PenSample>(sample));
-    return progress_;
-  }
-
-  Result<CalibrationOutcome> finish() override {
-    const auto tablet = tablet_.found();
-    if (!tablet) return tl::unexpected(tablet.error());
-    auto outcome = outcome_of(procedure_.finish());
-    outcome.report.devices = {tablet->device.id};
-    outcome.report.from_frame = "tablet " + tablet->device.name;
-    if (outcome.result) compare_with_stated_size(outcome.report, tablet->device);
-    return outcome;
-  }
-
- private:
-  StreamChoice tablet_;
-  TabletProcedure procedure_;
-  Progress progress_;
-};
+void sign(CalibrationOutcome& outcome, const DeviceDescription& tablet) {
+  outcome.report.from_frame = "tablet " + tablet.name;
+  if (outcome.result) compare_with_stated_size(outcome.report, tablet);
+}
 
 }  // namespace
 
 std::unique_ptr<Calibrator> tablet_calibrator(TabletWish wish) {
-  return std::make_unique<TabletCalibrator>(std::move(wish));
+  return std::make_unique<StreamCalibrator<PenSample, TabletProcedure>>(
+      std::move(wish.tablet), "tablet", TabletProcedure(std::move(wish.sheet)), sign);
 }
 
 Result<TapSheet> listed_taps(const std::filesystem::path& list, double width_mm, double height_mm) {

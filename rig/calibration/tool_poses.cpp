@@ -33,6 +33,11 @@ Result<std::vector<PoseSample>> ToolPoses::hear(DeviceNumber device, const Sampl
   if (*mine) waiting_.push_back(std::get<PoseSample>(sample));
   const auto seen = reference_->takes(device, sample);
   if (!seen) return tl::unexpected(seen.error());
+  if (reference_->chosen() && tool_.chosen() && reference_->chosen()->number != tool_.chosen()->number)
+    return failure(Fault::usage, "--reference " + reference_->chosen()->part + " is seen by " +
+                                     reference_->chosen()->device.name + ", " + tool_.chosen()->part +
+                                     " by " + tool_.chosen()->device.name +
+                                     ": the same tracker must see both");
   std::vector<PoseSample> out;
   if (*seen) {
     const auto& reference = std::get<PoseSample>(sample);

@@ -25,7 +25,7 @@ class ToolPoses {
 
   // The poses that are ready, in their order: at once without a reference, else as soon as the reference was
   // seen at that time or later. Where it was not seen near on both sides, the pose is not valid.
-  // Errors: as StreamChoice::takes.
+  // Errors: as StreamChoice::takes; usage where another tracker sees the reference.
   Result<std::vector<PoseSample>> hear(DeviceNumber device, const Sample& sample);
 
   // Those that still waited, at the end. Errors: not_found where tool or reference was never heard.

@@ -3,6 +3,8 @@
 #include <utility>
 #include <variant>
 
+#include "rig/calibration/session_inputs.h"
+
 namespace fude {
 namespace {
 
@@ -74,6 +76,18 @@ void Undistortion::describe(CalibrationReport& report) const {
   if (unmapped_ > 0)
     report.warnings.push_back(std::to_string(unmapped_) + " of " + std::to_string(straightened_) +
                               " poses lie beyond where the tracker's distortion is mapped");
+}
+
+Result<void> for_each_straight_pose(
+    const Session& session, const KnownCalibrations& known,
+    const std::function<Result<void>(DeviceNumber, const PoseSample&)>& hear) {
+  Undistortion undistortion(known);
+  for (const RecordedDevice& device : session.devices) undistortion.begin(device.number, device.description);
+  return for_each_input(session,
+                        [&](DeviceNumber device, const Sample& sample, const Transfer*) -> Result<void> {
+                          const auto* pose = std::get_if<PoseSample>(&sample);
+                          return pose ? hear(device, undistortion.straight(device, *pose)) : Result<void>();
+                        });
 }
 
 std::unique_ptr<Calibrator> undistorted(std::unique_ptr<Calibrator> calibrator, KnownCalibrations known) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "calibration/distortion_field.h"
 #include "calibration/report.h"
+#include "capture/session.h"
 #include "rig/calibration/calibrator.h"
 #include "rig/calibration/known_calibrations.h"
 #include "signal/device.h"
@@ -45,6 +47,10 @@ class Undistortion {
   std::optional<Error> of_another_;
   std::size_t straightened_ = 0, unmapped_ = 0;
 };
+
+// The poses of a session that is heard beside another, in their order and put right. Errors: of `hear`.
+Result<void> for_each_straight_pose(const Session& session, const KnownCalibrations& known,
+                                    const std::function<Result<void>(DeviceNumber, const PoseSample&)>& hear);
 
 // Hears what `calibrator` does, with the poses put right. Its finish() also has the errors of used().
 std::unique_ptr<Calibrator> undistorted(std::unique_ptr<Calibrator> calibrator, KnownCalibrations known);

@@ -6,14 +6,12 @@
 
 #include "calibration/sensor_axes.h"
 #include "capture/streams.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
+#include "rig/calibration/made_with.h"
 #include "rig/session_identity.h"
 
 namespace fude {
 namespace {
-
-// A table of numbers, or a device that tells no serial.
-bool anonymous(const std::string& device) { return device.empty() || device.starts_with("text:"); }
 
 // The tool whose poses are fused: the first that was seen.
 std::string tool_of(const Session& session) {
@@ -23,20 +21,10 @@ std::string tool_of(const Session& session) {
   return {};
 }
 
-// What speaks against a calibration; empty where nothing does.
-std::string made_with_other(const CalibrationReport& report, const Session& session) {
-  std::vector<std::string> here;
-  for (const RecordedDevice& device : session.devices) here.push_back(device.description.id);
-  if (std::none_of(here.begin(), here.end(), anonymous))
-    for (const std::string& device : report.devices)
-      if (!anonymous(device) && std::find(here.begin(), here.end(), device) == here.end())
-        return "the device " + device + ", which is not in this session";
-  const std::string tool = tool_of(session);
-  if (!report.tool.empty() && !tool.empty() && report.tool != tool)
-    return "the tool " + report.tool + ", and " + tool + " is fused";
-  if (!report.reference.empty())
-    return "the reference " + report.reference + ", and the tracker's frame is used";
-  return {};
+CalibratedHere here(const Session& session) {
+  CalibratedHere here{{}, tool_of(session), {}};
+  for (const RecordedDevice& device : session.devices) here.devices.push_back(device.description.id);
+  return here;
 }
 
 class Applying {
@@ -133,8 +121,8 @@ Result<FuseCalibration> fuse_calibration(const Session& session,
     }
     const auto stored = calibration_from_toml(one.toml, one.name);
     if (!stored) return tl::unexpected(stored.error());
-    if (const std::string other = made_with_other(stored->report, session); !other.empty()) {
-      calibration.notes.push_back("not applied: " + one.name + " was made with " + other);
+    if (const std::string other = made_otherwise(stored->report, here(session)); !other.empty()) {
+      calibration.notes.push_back("not applied: " + one.name + " was made " + other);
       continue;
     }
     applying.apply(one.name, *stored);

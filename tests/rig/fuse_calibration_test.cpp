@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "calibration/sensor_axes.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "rig/fusion/fuse_session.h"
 #include "tests/rig/simulated_session.h"
 
@@ -163,13 +163,13 @@ TEST(FuseCalibration, OfAnotherDeviceIsNotUsed) {
   const auto other = stored("imu", to_fields(imu), {"0001:0001:SERIAL"});
   EXPECT_GT(accuracy(fused_with(tracked(), {ours})).turn_rad,
             2 * accuracy(fused_with(tracked(), {other})).turn_rad);
-  EXPECT_TRUE(told(fused_with(tracked(), {other}), "0001:0001:SERIAL, which is not in this session"));
+  EXPECT_TRUE(told(fused_with(tracked(), {other}), "with the device 0001:0001:SERIAL, which is not here"));
   StoredCalibration palette{.result = {{"tip_m", std::vector{0.0, 0.0, -0.1}}}};
   palette.report.procedure = "pivot";
   palette.report.accepted = true;
   palette.report.tool = "palette";
   EXPECT_TRUE(
-      told(fused_with(tracked(), {{"pivot palette", toml_of(palette)}}), "the tool palette, and sensor is"));
+      told(fused_with(tracked(), {{"pivot palette", toml_of(palette)}}), "the tool palette, and this is sensor"));
   StoredCalibration refused{.result = to_fields(imu)};
   refused.report.procedure = "imu";
   EXPECT_EQ(fuse_session(tracked(), {.calibrations = {{"imu.toml", toml_of(refused)}}}).error().fault,

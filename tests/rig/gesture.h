@@ -7,7 +7,7 @@
 
 #include "calibration/tablet_surface.h"
 #include "capture/session.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "rig/replay.h"
 #include "rig/share_folder.h"
 #include "signal/elementary.h"

@@ -15,7 +15,7 @@
 #include "rig/calibration/surface.h"
 #include "rig/calibration/tracker.h"
 #include "rig/import_session.h"
-#include "rig/landmark_file.h"
+#include "rig/calibration/landmark_file.h"
 #include "tests/fakes/recordings.h"
 #include "tests/fakes/scripted_tracker.h"
 

@@ -10,10 +10,13 @@
 #include <fstream>
 
 #include "calibration/pose_fields.h"
+#include "calibration/surface.h"
+#include "capture/session_writer.h"
 #include "rig/calibration/calibrate_session.h"
 #include "rig/calibration/camera.h"
 #include "rig/import_session.h"
 #include "tests/fakes/recordings.h"
+#include "tests/fakes/scripted_tracker.h"
 #include "tests/vision/rendered_board.h"
 #include "vision/camera_pose.h"
 
@@ -46,12 +49,19 @@ std::string lens_toml(const std::string& device) {
                   report});
 }
 
-KnownCalibrations known(const std::string& toml) {
-  const fs::path file = fs::path(testing::TempDir()) / ("fude-lens-" + std::to_string(getpid()) + ".toml");
-  std::ofstream(file) << toml;
-  auto read = KnownCalibrations::read({file});
+fs::path scratch(const std::string& name) {
+  return fs::path(testing::TempDir()) / ("fude-" + std::to_string(getpid()) + "-" + name);
+}
+
+KnownCalibrations known(const std::vector<std::string>& tomls) {
+  std::vector<fs::path> files;
+  for (const std::string& toml : tomls) {
+    files.push_back(scratch("known-" + std::to_string(files.size()) + ".toml"));
+    std::ofstream(files.back()) << toml;
+  }
+  auto read = KnownCalibrations::read(files);
   EXPECT_TRUE(read) << read.error().message;
-  fs::remove(file);
+  for (const fs::path& file : files) fs::remove(file);
   return read ? std::move(*read) : KnownCalibrations{};
 }
 
@@ -83,14 +93,13 @@ const Pose<Paper, Camera> truth{
     Eigen::Quaterniond(0, 1, 0, 0) * Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX())),
     {0.2, -0.06, 0.42}};
 
-Session picture_of_board() {
-  const auto lying = lying_at(0.09, 0.21, std::acos(-1.0) / 18);
-  return filmed(RenderedCamera(lens()).picture(board, truth.inverse() * lying));
-}
+const auto lying = lying_at(0.09, 0.21, std::acos(-1.0) / 18);
+
+Session picture_of_board() { return filmed(RenderedCamera(lens()).picture(board, truth.inverse() * lying)); }
 
 TEST(CalibrateCameraPose, ABoardOnThePaperTellsWhereTheCameraIs) {
-  const CameraPoseWish wish{.board = board, .lying_at = {90, 210, 10}};
-  const auto outcome = calibrated(wish, known(lens_toml("046d:0825:X")), picture_of_board());
+  const CameraPoseWish wish{.board = board, .at = LyingAt{90, 210, 10}};
+  const auto outcome = calibrated(wish, known({lens_toml("046d:0825:X")}), picture_of_board());
   ASSERT_TRUE(outcome) << outcome.error().message;
   ASSERT_TRUE(outcome->result) << outcome->report.reason;
   const auto read = calibration_from_toml(toml_of({*outcome->result, outcome->report}), "test");
@@ -103,12 +112,119 @@ TEST(CalibrateCameraPose, ABoardOnThePaperTellsWhereTheCameraIs) {
   EXPECT_LT(outcome->report.rms, 0.5);
 }
 
+// The same board, its corners touched with a tip on a surface that stands anyhow in the tracker's frame.
+class TouchedBoard : public testing::Test {
+ protected:
+  void SetUp() override {
+    surface_.width_mm = 420;
+    surface_.height_mm = 297;
+    surface_.paper_from_tracker = {
+        Eigen::Quaterniond(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized())),
+        Eigen::Vector3d(150, -80, 900)};
+  }
+  void TearDown() override { fs::remove(file_); }
+
+  // In the order given, of outermost_corners().
+  void touch(const std::vector<std::size_t>& order) {
+    fs::remove(file_);
+    auto writer = SessionWriter::create(file_);
+    ASSERT_TRUE(writer) << writer.error().message;
+    const auto tracker = writer->add_device({.id = "0f44:ff20:A1", .name = "t", .kind = DeviceKind::tracker});
+    const auto corners = outermost_corners(board);
+    Noise noise(5);
+    double t = 0;
+    for (const std::size_t corner : order) {
+      const Eigen::Vector3d paper_m = lying * corners[corner].at_m;
+      const Eigen::Vector3d at_m = 1e-3 * (surface_.paper_from_tracker.inverse() * (1e3 * paper_m));
+      const Eigen::Quaterniond turned(
+          Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, double(corner), 0).normalized()));
+      const Eigen::Vector3d missed = noise.vector(0.2e-3);
+      for (int i = 0; i < 20; ++i, t += 0.02)
+        ASSERT_TRUE(writer->add_sample(
+            *tracker, pose_sample({turned, at_m - turned * tip_m_ + missed + noise.vector(2e-5)}, t)));
+    }
+    ASSERT_TRUE(writer->close());
+  }
+
+  KnownCalibrations calibrations() const {
+    CalibrationReport report{.procedure = "surface", .accepted = true, .devices = {"0f44:ff20:A1"}};
+    return known({lens_toml("046d:0825:X"), toml_of({to_fields(surface_), report})});
+  }
+
+  Result<CalibrationOutcome> placed() const {
+    return calibrated({.board = board, .at = TouchedCorners{file_, {{}, tip_m_}}}, calibrations(),
+                      picture_of_board());
+  }
+
+  const Eigen::Vector3d tip_m_{0.01, 0.002, -0.15};
+  SurfaceCalibration surface_;
+  fs::path file_ = scratch("touched.fude");
+};
+
+TEST_F(TouchedBoard, TellsWhereTheCameraIs) {
+  touch({0, 1, 2, 3});
+  const auto outcome = placed();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->result) << outcome->report.reason;
+  const auto found = pose_in<Paper, Camera>(*outcome->result, "paper_from_camera");
+  ASSERT_TRUE(found);
+  // As far off as the corners put the board, 0.4 m below the camera.
+  const auto off = [&](const Eigen::Vector3d& paper_m) {
+    return 1e3 * (*found * (truth.inverse() * paper_m) - paper_m).norm();
+  };
+  const double below_mm = off(lying * Eigen::Vector3d(0.1, 0.06, 0));
+  std::printf(
+      "figure: a board's corners touched to 0.2 mm: places under it %.2f mm off, within %.2f mm stated\n",
+      below_mm, (*outcome->report.ci95)[1]);
+  EXPECT_LT(below_mm, 0.5);
+  EXPECT_LT(below_mm, (*outcome->report.ci95)[1]);
+  EXPECT_LT(found->rotation.angularDistance(truth.rotation), 8e-3);
+  EXPECT_TRUE(numbers_in(outcome->report.details, "board_ci95_mm"));
+}
+
+TEST_F(TouchedBoard, OfWhichTheOrderIsWrongIsRefusedByName) {
+  touch({0, 3, 2, 1});
+  const auto around = placed();
+  ASSERT_FALSE(around);
+  EXPECT_NE(around.error().message.find("the board's corners: "), std::string::npos)
+      << around.error().message;
+  touch({0, 1, 3, 2});
+  const auto crossed = placed();
+  ASSERT_FALSE(crossed);
+  EXPECT_NE(crossed.error().message.find("touched in the other order"), std::string::npos)
+      << crossed.error().message;
+  touch({0, 1, 2});
+  const auto three = placed();
+  ASSERT_FALSE(three);
+  EXPECT_NE(three.error().message.find("3 points were measured, but 4"), std::string::npos)
+      << three.error().message;
+}
+
+TEST_F(TouchedBoard, MayBeMeasuredInstead) {
+  const fs::path list = scratch("corners.csv");
+  {
+    std::ofstream file(list);
+    for (const Landmark& corner : outermost_corners(board)) {
+      const Eigen::Vector3d mm = 1e3 * (lying * corner.at_m);
+      file << corner.name << "," << mm.x() << "," << mm.y() << "," << mm.z() << "\n";
+    }
+  }
+  const auto outcome = calibrated({.board = board, .at = ListedCorners{list}},
+                                  known({lens_toml("046d:0825:X")}), picture_of_board());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->result) << outcome->report.reason;
+  const auto found = pose_in<Paper, Camera>(*outcome->result, "paper_from_camera");
+  EXPECT_LT((found->translation - truth.translation).norm(), 2e-3);
+  fs::remove(list);
+}
+
 TEST(CalibrateCameraPose, WithoutTheLensItSaysWhatToDo) {
-  const auto outcome = calibrated({.board = board}, {}, picture_of_board());
+  const auto outcome = calibrated({.board = board, .at = LyingAt{}}, {}, picture_of_board());
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().fault, Fault::usage);
   EXPECT_NE(outcome.error().message.find("fude calibrate camera first"), std::string::npos);
-  const auto other = calibrated({.board = board}, known(lens_toml("046d:0825:Y")), picture_of_board());
+  const auto other =
+      calibrated({.board = board, .at = LyingAt{}}, known({lens_toml("046d:0825:Y")}), picture_of_board());
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().message.find("046d:0825:Y"), std::string::npos) << other.error().message;
 }
@@ -136,7 +252,7 @@ TEST(CalibrateCameraPose, RecordedBoards) {
   for (const RecordedSample& recorded : all->samples) {
     Session one = *all;
     one.samples = {recorded};
-    const auto outcome = calibrated({}, known(toml_of({*camera->result, camera->report})), one);
+    const auto outcome = calibrated({}, known({toml_of({*camera->result, camera->report})}), one);
     ASSERT_TRUE(outcome) << outcome.error().message;
     ASSERT_TRUE(outcome->result) << outcome->report.reason;
     worst_px = std::max(worst_px, numbers_in(outcome->report.details, "reprojection_rms_px")->front());

@@ -17,7 +17,7 @@
 #include "rig/calibration/calibrate_session.h"
 #include "rig/calibration/distortion.h"
 #include "rig/calibration/imu_axes.h"
-#include "rig/calibration_file.h"
+#include "rig/calibration/calibration_file.h"
 #include "tests/fakes/scripted_tracker.h"
 
 namespace fude {

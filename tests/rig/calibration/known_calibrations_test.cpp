@@ -50,7 +50,7 @@ TEST_F(KnownPivots, OneOfAnotherDeviceOrToolIsRefusedByName) {
   EXPECT_NE(device.error().message.find("0f44:ff20:A"), std::string::npos) << device.error().message;
   const auto other = tip_of("surface", {}, *known, tool("0f44:ff20:A", "brush"));
   ASSERT_FALSE(other);
-  EXPECT_NE(other.error().message.find("of the tool probe"), std::string::npos) << other.error().message;
+  EXPECT_NE(other.error().message.find("with the tool probe"), std::string::npos) << other.error().message;
 }
 
 TEST_F(KnownPivots, WhereThereIsNoneItIsAskedFor) {

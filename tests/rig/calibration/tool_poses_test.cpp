@@ -68,6 +68,16 @@ TEST(ToolPoses, AReferenceThatIsGoneIsNotWaitedForWithoutEnd) {
   EXPECT_EQ(count, 10000U - 4096U);
 }
 
+TEST(ToolPoses, AReferenceOfAnotherTrackerIsRefusedByName) {
+  ToolPoses seen = poses();
+  seen.begin(2, {.id = "1234:5678:B", .name = "Fastrak"});
+  ASSERT_TRUE(seen.hear(1, brush(0)));
+  const auto other = seen.hear(2, easel(0.1));
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().message,
+            "--reference easel is seen by Fastrak, brush by Liberty: the same tracker must see both");
+}
+
 TEST(ToolPoses, TheReportSaysWhatTheyCameFrom) {
   ToolPoses seen = poses();
   ASSERT_TRUE(seen.hear(1, brush(0)));
