@@ -68,6 +68,9 @@ struct Fitted {
   double rms_s;
 };
 
+// All touches are at one speed: where the brush rests they are.
+bool rests(const Fitted& fitted) { return fitted.fit.speed_spread < least_speed_spread; }
+
 // Each candidate's fit, best first; those that came to the same offset once.
 std::vector<Fitted> fits_of(const std::vector<TouchCandidate>& candidates, const Witness& touching,
                             const Series& path, const TouchModel& model) {
@@ -80,9 +83,11 @@ std::vector<Fitted> fits_of(const std::vector<TouchCandidate>& candidates, const
     });
     if (!known) fits.push_back({*fit, candidate.side, root_mean_square(residual_times(*fit))});
   }
-  // What leaves many touches out has small residuals for nothing.
+  // What leaves many touches out has small residuals for nothing, and so has what lies where the brush rests.
   const auto merit = [](const Fitted& f) { return f.rms_s / double(f.fit.used() * f.fit.used()); };
-  std::sort(fits.begin(), fits.end(), [&](const auto& x, const auto& y) { return merit(x) < merit(y); });
+  std::sort(fits.begin(), fits.end(), [&](const auto& x, const auto& y) {
+    return rests(x) != rests(y) ? rests(y) : merit(x) < merit(y);
+  });
   return fits;
 }
 
@@ -155,8 +160,8 @@ std::optional<double> other_pairing(const std::vector<TouchCandidate>& candidate
     if (std::abs(c.line.offset_s - best.line.offset_s) > well_apart_s &&
         c.agreeing * c.contrast > as_good * best.agreeing * best.contrast)
       return c.line.offset_s;
-  if (fits.size() > 1 && fits[1].rms_s < clearly_better * fits[0].rms_s &&
-      5 * fits[1].fit.used() > 4 * fits[0].fit.used())
+  if (fits.size() > 1 && !rests(fits[0]) && !rests(fits[1]) &&
+      fits[1].rms_s < clearly_better * fits[0].rms_s && 5 * fits[1].fit.used() > 4 * fits[0].fit.used())
     return fits[1].fit.line.offset_s;
   return std::nullopt;
 }

@@ -29,7 +29,6 @@ struct TouchFit {
   double speed = 0;                       // weighted root mean square of the rates
   double speed_spread = 0;  // how far they differ among themselves, without noise; relative to speed
   bool stops = false;       // the path breaks off at the touch, as of a hard pen
-  double window_s = 0;      // of the parabolas
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();   // of the surface
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // where it has those heights
   std::size_t used() const;
@@ -42,11 +41,12 @@ struct TouchModel {
 
 // At a touch at t, the height at t − offset(t) is the same for all that come down and, on its own, for all
 // that lift (a tuft that was pressed lifts later than it touched). Slow and fast touches tell that height
-// from the offset. Gauss-Newton on heights of local parabolas, weighted by the noise of the path and the time
-// between two samples of the touching stream; noise in the rates is taken out of the normal equations.
-// Touches off by more than four standard deviations are left out. The standard deviation is that of the
-// residuals. None: fewer than `fewest_touches` lie on the path and agree, or it runs away from `start` by a
-// tenth of a second or a drift of 1000 ppm.
+// from the offset. The likeliest, by Fisher's scoring: heights and rates of smoothing splines, with the
+// noise that the path shows; any moment between two samples of the touching stream alike (felt_touch.h); and
+// what the touches are more uneven than both, in height and in time. Touches off by more than four standard
+// deviations are left out. The standard deviation is that of the likelihood, or of the touches' own scatter
+// where that is wider. None: fewer than `fewest_touches` lie on the path and agree, or it runs away from
+// `start` by a tenth of a second or a drift of 1000 ppm.
 inline constexpr std::size_t fewest_touches = 10;
 std::optional<TouchFit> fit_touches(std::span<const Touch> touches, const Series& path,
                                     const DelayLine& start, const TouchModel& model);
