@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/ink/sheet_grain.h"
+
 namespace fude {
 namespace {
 
@@ -25,12 +27,14 @@ Result<Painting> Painting::open(const PaintingSetup& setup) {
 
 Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink)
     : memory_(std::make_unique<SnapshotMemory>()), ink_(std::make_unique<InkThread>(std::move(ink))) {
+  const auto grain = std::make_shared<SheetGrain>(setup.ink.paper, setup.ink.seed);
   brushes_.assign(pen_ends, Brush(setup.brush, setup.seed));
   LoadBrush load = setup.load;
   for (Brush& brush : brushes_) {
     brush.load(load.wetness, load.strength);
     brush.set_endless(setup.endless);
     brush.expect_film(setup.ink.paper.film);
+    brush.paint_over(grain);
     load.strength = {};
   }
   exchange_delay_ = static_cast<Step>(std::ceil(exchange_delay_s / ink_->step_s() - 1e-9));

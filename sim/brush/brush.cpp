@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace fude {
 namespace {
@@ -63,7 +64,9 @@ void Brush::away(double elapsed_s) {
 
 // The tuft with the ink that clings to it, as its last footprint shows it.
 TuftSurface Brush::marked_surface() const {
-  return swollen(surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle), state_.footprint.soak_mm);
+  TuftSurface surface = surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
+  press(tuft_, state_.tuft.reactions, surface);
+  return swollen(std::move(surface), state_.footprint.soak_mm);
 }
 
 void Brush::take_footprint() { state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading)}; }
@@ -99,8 +102,8 @@ BrushFrame Brush::move(const BrushInput& input) {
     after.push_back({marked_surface(), step_s});
   }
 
-  std::optional<FootprintMap> map =
-      sweep_.sweep(after, tuft_.spec.cell_mm, texture_, offered(state_.loading));
+  const std::vector<InkLoad> looks = offered(state_.loading);
+  std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, {texture_, looks, grain_.get()});
   if (!map) {
     even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, longest_flow_s));
     return frame;
@@ -127,6 +130,8 @@ std::vector<InkLoad> Brush::draw_for(const FootprintMap& map, double elapsed_s) 
 void Brush::take(const Exchange& exchange) { book(state_.loading, exchange); }
 
 void Brush::expect_film(double ul_per_mm2) { film_ul_mm2_ = ul_per_mm2; }
+
+void Brush::paint_over(std::shared_ptr<PaperGrain> grain) { grain_ = std::move(grain); }
 
 void Brush::load(float wetness, const Concentrations& strength) {
   fill(state_.loading, static_cast<double>(wetness), strength);

@@ -7,12 +7,14 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "signal/brush_input.h"
 #include "signal/ink_event.h"
+#include "signal/paper_grain.h"
 #include "signal/result.h"
 #include "sim/brush/brush_spec.h"
 #include "sim/brush/footprint.h"
@@ -76,6 +78,9 @@ class Brush {
   // until take says what it was. 0, as at first: nothing is.
   void expect_film(double ul_per_mm2);
 
+  // The relief of the paper, which dry hair feels. None, as at first: it is flat.
+  void paint_over(std::shared_ptr<PaperGrain> grain);
+
   // Dips: every patch to `wetness` of its capacity, with ink of this strength.
   void load(float wetness, const Concentrations& strength);
   void set_endless(bool endless);  // the tuft stays as loaded
@@ -97,6 +102,7 @@ class Brush {
 
   Tuft tuft_;
   HairTexture texture_;
+  std::shared_ptr<PaperGrain> grain_;
   double film_ul_mm2_ = 0;
   BrushState state_;
   FootprintSweep sweep_;  // follows state_.footprint

@@ -16,6 +16,7 @@ namespace fude {
 struct MeshPoint {
   Eigen::Vector2d at;       // mm
   Eigen::Vector2d on_tuft;  // along, around
+  HairState hair;
 };
 
 class ContactMesh {
@@ -53,7 +54,7 @@ class ContactMesh {
 
   MeshPoint point(std::size_t ring, std::size_t j) const {
     const ContactRing& r = contact_.rings[ring];
-    return {r.point[j], {r.along, r.around[j]}};
+    return {r.point[j], {r.along, r.around[j]}, r.hair};
   }
   MeshPoint head(std::size_t ring, const Edge& edge) const { return point(ring, edge.from); }
   MeshPoint tail(std::size_t ring, const Edge& edge) const {

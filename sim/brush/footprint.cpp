@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/brush/stamp.h"
-
 namespace fude {
 namespace {
 
@@ -114,9 +112,12 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
 // Newly covered paper takes after the hair that came over it first; where streaks are open, after that on the
 // very rim, so that they run on from one frame to the next. What is covered on and on takes after the hair
 // that touches it last.
-void FootprintSweep::stamp(FootprintMap& map, const HairTexture& texture,
-                           const std::vector<InkLoad>& loads) const {
-  Stamp stamp(touched_.frame(), texture, loads, map);
+void FootprintSweep::stamp(FootprintMap& map, const HairLook& look) const {
+  double widest = 0;
+  for (std::size_t i = 0; i < count_; ++i)
+    for (const ContactRing& ring : instants_[i].contact.contact().rings)
+      widest = std::max(widest, ring.hair.spread);
+  Stamp stamp(touched_.frame(), look, widest, map);
   const auto contact = [&](std::size_t i) -> const Contact& { return instants_[i].contact.contact(); };
   if (count_ > 2) stamp.wait_for(fresh_);
   for (std::size_t i = 1; i < count_ && stamp.waits(); ++i) stamp.add(contact(i));
@@ -131,8 +132,7 @@ void FootprintSweep::stamp(FootprintMap& map, const HairTexture& texture,
 }
 
 std::optional<FootprintMap> FootprintSweep::sweep(std::span<const TimedSurface> after, double cell_mm,
-                                                  const HairTexture& texture,
-                                                  const std::vector<InkLoad>& loads) {
+                                                  const HairLook& look) {
   if (after.empty()) return std::nullopt;
   find_instants(after);
   std::optional<FootprintMap> map;
@@ -147,7 +147,7 @@ std::optional<FootprintMap> FootprintSweep::sweep(std::span<const TimedSurface> 
     map->fresh.assign(cells, 0);
     map->contact_s.assign(cells, 0);
     find_coverage(*frame, *map);
-    stamp(*map, texture, loads);
+    stamp(*map, look);
   } else {
     settled_.reset({});
   }

@@ -11,7 +11,7 @@
 #include "signal/ink_event.h"
 #include "sim/brush/contact_mesh.h"
 #include "sim/brush/coverage.h"
-#include "sim/brush/hair_texture.h"
+#include "sim/brush/stamp.h"
 #include "sim/brush/tuft_surface.h"
 #include "sim/brush/winding_fill.h"
 
@@ -31,10 +31,10 @@ class FootprintSweep {
   // The tuft comes from nowhere: all it covers is new, and nothing is known of the time before.
   void come_from_nowhere();
 
-  // The footprint swept through `after`, in order. `loads` are those of the patches that the map names.
-  // None where nothing touched. `cell_mm` is the same in all calls.
+  // The footprint swept through `after`, in order, of hair that looks so; its loads are those of the patches
+  // that the map names. None where nothing touched. `cell_mm` is the same in all calls.
   std::optional<FootprintMap> sweep(std::span<const TimedSurface> after, double cell_mm,
-                                    const HairTexture& texture, const std::vector<InkLoad>& loads);
+                                    const HairLook& look);
 
  private:
   // A contact on the way, with the share of time it stands for.
@@ -47,7 +47,7 @@ class FootprintSweep {
   void find_instants(std::span<const TimedSurface> after);
   std::optional<CoverageFrame> frame_of_instants(double cell_mm) const;
   void find_coverage(const CoverageFrame& frame, FootprintMap& map);
-  void stamp(FootprintMap& map, const HairTexture& texture, const std::vector<InkLoad>& loads) const;
+  void stamp(FootprintMap& map, const HairLook& look) const;
 
   TuftSurface last_;  // empty: from nowhere
   bool settled_known_ = false;

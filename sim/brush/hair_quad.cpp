@@ -45,15 +45,24 @@ std::pair<int, int> find_rows(const HairQuad& quad, int height, std::vector<Hair
 }
 
 HairSlope slope_of(const HairQuad& quad) {
+  HairSlope slope;
+  slope.low = slope.high = quad[0].hair;
+  for (const HairCorner& corner : quad) {
+    slope.low = slope.low.min(corner.hair);
+    slope.high = slope.high.max(corner.hair);
+  }
   const float ux = quad[2].x - quad[0].x;
   const float uy = quad[2].y - quad[0].y;
   const float vx = quad[3].x - quad[1].x;
   const float vy = quad[3].y - quad[1].y;
   const float area = ux * vy - uy * vx;
-  if (std::abs(area) < 1e-6F) return {};
+  constexpr float flat = 1e-3F;
+  if (std::abs(area) < flat * (ux * ux + uy * uy + vx * vx + vy * vy)) return slope;
   const Hair by_u = (quad[2].hair - quad[0].hair) / area;
   const Hair by_v = (quad[3].hair - quad[1].hair) / area;
-  return {vy * by_u - uy * by_v, ux * by_v - vx * by_u};
+  slope.by_x = vy * by_u - uy * by_v;
+  slope.by_y = ux * by_v - vx * by_u;
+  return slope;
 }
 
 }  // namespace fude

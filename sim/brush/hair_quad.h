@@ -41,10 +41,13 @@ inline int first_centre(float x, int limit) {
 // row hair goes over linearly from edge to edge, so that neighbouring quads agree on what they share.
 std::pair<int, int> find_rows(const HairQuad& quad, int height, std::vector<HairRow>& rows);
 
-// How hair changes from cell to cell, by the diagonals of the quad; nothing where it is flat.
+// How hair changes from cell to cell, by the diagonals of the quad, and between what it stays; the same
+// everywhere where the quad is flat.
 struct HairSlope {
   Hair by_x = Hair::Zero();
   Hair by_y = Hair::Zero();
+  Hair low = Hair::Zero();
+  Hair high = Hair::Zero();
 };
 HairSlope slope_of(const HairQuad& quad);
 

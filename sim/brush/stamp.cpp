@@ -14,6 +14,7 @@ using Eigen::Vector2d;
 namespace {
 
 constexpr int blocks_per_word = 64;
+constexpr std::size_t tip_patches = 2 * patches_around;  // the last quarter of the tuft
 
 std::uint16_t patch_of(const Hair& hair) {
   return static_cast<std::uint16_t>(patch_at(static_cast<double>(hair[0]), static_cast<double>(hair[1]) - 1));
@@ -33,13 +34,21 @@ std::uint64_t mask(int first, int end, int word) {
 
 }  // namespace
 
-Stamp::Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
-             FootprintMap& map)
-    : frame_(frame), texture_(texture), loads_(loads), map_(map) {
+Stamp::Stamp(const CoverageFrame& frame, const HairLook& look, double widest, FootprintMap& map)
+    : frame_(frame), look_(look), map_(map) {
   map.patch.assign(map.fresh.size(), 0);
-  for (const InkLoad& load : loads)
-    streaky_ = streaky_ || static_cast<double>(load.wetness) < texture.streak_wetness();
-  if (streaky_) inked_.assign(map.fresh.size(), 1);
+  float driest = 1;
+  float tip = 0;
+  for (std::size_t i = 0; i < look.loads.size(); ++i) {
+    driest = std::min(driest, look.loads[i].wetness);
+    if (i + tip_patches >= look.loads.size()) tip += look.loads[i].wetness / tip_patches;
+  }
+  streaky_ = look.texture.reach(driest, 0) < 1 || look.texture.opening(driest, widest) > 0;
+  split_shift_ = look.texture.split_shift(tip);
+  if (streaky_) {
+    inked_.assign(map.fresh.size(), 1);
+    reach_.assign(map.fresh.size(), 1);
+  }
   block_columns_ = frame.columns() / block_side;
   block_rows_ = (frame.rows + block_side - 1) / block_side;
   block_words_ = static_cast<std::size_t>((block_columns_ + blocks_per_word - 1) / blocks_per_word);
@@ -80,18 +89,23 @@ float Stamp::wetness_at(double along, double around) const {
   const auto up = static_cast<float>(row - i);
   const auto on = static_cast<float>(column - j);
   const auto wet = [&](int y, int x) {
-    return loads_[static_cast<std::size_t>(y * patches_around + x % patches_around)].wetness;
+    return look_.loads[static_cast<std::size_t>(y * patches_around + x % patches_around)].wetness;
   };
   const float low = wet(i, j) + on * (wet(i, j + 1) - wet(i, j));
   const float high = wet(i + 1, j) + on * (wet(i + 1, j + 1) - wet(i + 1, j));
   return low + up * (high - low);
 }
 
-HairCorner Stamp::corner_at(const Vector2d& at, double along, double around) const {
-  return {static_cast<float>((at.x() - frame_.left_mm()) / frame_.cell_mm),
-          static_cast<float>((at.y() - frame_.bottom_mm()) / frame_.cell_mm),
-          Hair(static_cast<float>(along), static_cast<float>(around + 1),
-               streaky_ ? wetness_at(along, around) : 1, 0)};
+HairCorner Stamp::corner_at(const Vector2d& at, double along, double around, const HairState& state) const {
+  HairCorner corner{static_cast<float>((at.x() - frame_.left_mm()) / frame_.cell_mm),
+                    static_cast<float>((at.y() - frame_.bottom_mm()) / frame_.cell_mm),
+                    Hair(static_cast<float>(along), static_cast<float>(around + 1), 1, 0)};
+  if (streaky_) {
+    const float wetness = wetness_at(along, around);
+    corner.hair[2] = look_.texture.reach(wetness, state.press_mn_mm);
+    corner.hair[3] = look_.texture.opening(wetness, state.spread);
+  }
+  return corner;
 }
 
 void Stamp::add(const Contact& contact) {
@@ -99,7 +113,7 @@ void Stamp::add(const Contact& contact) {
   const auto corners = [&](const ContactRing& ring) {
     Ring all;
     for (std::size_t j = 0; j < ring_points; ++j)
-      all[j] = corner_at(ring.point[j], ring.along, ring.around[j]);
+      all[j] = corner_at(ring.point[j], ring.along, ring.around[j], ring.hair);
     return all;
   };
   for (std::size_t r = 0; r < contact.run_ends.size(); ++r) {
@@ -146,7 +160,7 @@ void Stamp::name_blocks(HairQuad quad) {
   if (streaky_) slope = slope_of(quad);
   for (int row = first_row; row < end_row; ++row) {
     const HairRow& ends = rows_[static_cast<std::size_t>(row - first_row)];
-    // Half a block more on either side: hair runs on straight to the rim.
+    // Half a block more on either side, to the rim.
     const int first = first_centre(ends.from - 0.5F, block_columns_);
     const int end = first_centre(ends.to + 0.5F, block_columns_);
     for (int word = first / blocks_per_word; word * blocks_per_word < end; ++word) {
@@ -155,11 +169,12 @@ void Stamp::name_blocks(HairQuad quad) {
       if (bits == 0) continue;
       waiting_[i] &= ~bits;
       named_[i] |= bits;
-      const Hair by_column = (ends.last - ends.first) / std::max(ends.to - ends.from, 1e-6F);
-      const Hair start = ends.first + (0.5F - ends.from) * by_column;
+      const float by_column = 1 / std::max(ends.to - ends.from, 1e-6F);
       for (; bits != 0; bits &= bits - 1) {
         const int column = word * blocks_per_word + std::countr_zero(bits);
-        write_block(row, column, start + static_cast<float>(column) * by_column, slope);
+        const float share =
+            std::clamp((static_cast<float>(column) + 0.5F - ends.from) * by_column, 0.0F, 1.0F);
+        write_block(row, column, ends.first + share * (ends.last - ends.first), slope);
       }
     }
   }
@@ -175,7 +190,7 @@ Hair Stamp::hair_near(const Contact& contact, int row, int column) const {
       const double distance = (ring.point[j] - centre).squaredNorm();
       if (distance >= least) continue;
       least = distance;
-      nearest = corner_at(ring.point[j], ring.along, ring.around[j]).hair;
+      nearest = corner_at(ring.point[j], ring.along, ring.around[j], ring.hair).hair;
     }
   return nearest;
 }
@@ -186,7 +201,8 @@ void Stamp::name_rest(const Contact& contact) {
       for (std::uint64_t bits = waiting_[static_cast<std::size_t>(row) * block_words_ + word]; bits != 0;
            bits &= bits - 1) {
         const int column = static_cast<int>(word) * blocks_per_word + std::countr_zero(bits);
-        write_block(row, column, hair_near(contact, row, column), {});
+        const Hair hair = hair_near(contact, row, column);
+        write_block(row, column, hair, {Hair::Zero(), Hair::Zero(), hair, hair});
       }
 }
 
@@ -205,14 +221,14 @@ void Stamp::write_block(int row, int column, const Hair& centre, const HairSlope
   for (int y = row * block_side; y < end_row; ++y, start += by_y) {
     Hair hair = start;
     for (int x = column * block_side; x < (column + 1) * block_side; ++x, hair += by_x)
-      write_cell(static_cast<std::size_t>(y * map_.columns + x), hair);
+      write_cell(static_cast<std::size_t>(y * map_.columns + x), hair.max(by_block.low).min(by_block.high));
   }
 }
 
 void Stamp::write_cell(std::size_t cell, const Hair& hair) {
   map_.patch[cell] = patch_of(hair);
-  inked_[cell] = static_cast<float>(texture_.inked(
-      static_cast<double>(hair[0]), static_cast<double>(hair[1]) - 1, static_cast<double>(hair[2])));
+  inked_[cell] = look_.texture.inked(hair[0], hair[1], hair[2], hair[3], split_shift_);
+  reach_[cell] = hair[2];
 }
 
 void Stamp::wait_for_rim(const Coverage& cover) {
@@ -223,7 +239,9 @@ void Stamp::wait_for_rim(const Coverage& cover) {
 }
 
 void Stamp::add_passage(const ContactMesh& from, const ContactMesh& to) {
-  const auto corner = [&](const MeshPoint& p) { return corner_at(p.at, p.on_tuft.x(), p.on_tuft.y()); };
+  const auto corner = [&](const MeshPoint& p) {
+    return corner_at(p.at, p.on_tuft.x(), p.on_tuft.y(), p.hair);
+  };
   for_each_passage(from, to,
                    [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
                      write_cells({corner(a), corner(b), corner(c), corner(d)});
@@ -249,7 +267,31 @@ void Stamp::write_cells(const HairQuad& quad) {
   }
 }
 
+void Stamp::take_off_hollows() {
+  std::vector<float> heights;
+  for (int row = 0; row < frame_.rows; ++row) {
+    const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.columns);
+    const auto needed = [&](int column) {
+      const std::size_t i = begin + static_cast<std::size_t>(column);
+      return reach_[i] < 1 && map_.contact_s[i] + map_.fresh[i] > 0;
+    };
+    int first = 0;
+    int end = map_.columns;
+    while (first < end && !needed(first)) ++first;
+    while (end > first && !needed(end - 1)) --end;
+    if (first == end) continue;
+    heights.resize(static_cast<std::size_t>(end - first));
+    look_.grain->heights(frame_.left_mm() + (first + 0.5) * frame_.cell_mm,
+                         frame_.bottom_mm() + (row + 0.5) * frame_.cell_mm, frame_.cell_mm, heights);
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      const std::size_t i = begin + static_cast<std::size_t>(first) + k;
+      inked_[i] *= HairTexture::grained(look_.texture.hills(reach_[i]), heights[k]);
+    }
+  }
+}
+
 void Stamp::finish() {
+  if (look_.grain && look_.texture.grained()) take_off_hollows();
   for (std::size_t i = 0; i < inked_.size(); ++i) {
     map_.fresh[i] *= inked_[i];
     map_.contact_s[i] *= inked_[i];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "signal/ink_event.h"
+#include "signal/paper_grain.h"
 #include "sim/brush/contact_mesh.h"
 #include "sim/brush/coverage.h"
 #include "sim/brush/hair_quad.h"
@@ -18,14 +19,22 @@
 
 namespace fude {
 
+// What hair is looked up by: its maps, the ink of its patches, and the paper, none where its relief is
+// unknown.
+struct HairLook {
+  const HairTexture& texture;
+  const std::vector<InkLoad>& loads;
+  PaperGrain* grain = nullptr;
+};
+
 // Names the patches of a map's cells, and takes off the share of them under hair that leaves no ink.
 class Stamp {
  public:
-  // `map` is over `frame`; all outlive the stamp.
-  Stamp(const CoverageFrame& frame, const HairTexture& texture, const std::vector<InkLoad>& loads,
-        FootprintMap& map);
+  // `map` is over `frame`; `widest` is the largest spread of the hair that is to be looked up. All outlive
+  // the stamp; grain may be none.
+  Stamp(const CoverageFrame& frame, const HairLook& look, double widest, FootprintMap& map);
 
-  // Whether streaks are open anywhere.
+  // Whether hair leaves white anywhere.
   bool streaky() const { return streaky_; }
 
   // Blocks in which `cover` holds a sample wait to be named, if they are not yet.
@@ -42,13 +51,13 @@ class Stamp {
   // Writes cells that wait under the rim of the contact on its way from a to b.
   void add_passage(const ContactMesh& a, const ContactMesh& b);
 
-  // Takes off what is not inked.
+  // Takes off what is not inked, and what lies in the hollows of the paper.
   void finish();
 
  private:
   static constexpr int block_side = 4;  // cells
 
-  HairCorner corner_at(const Eigen::Vector2d& at, double along, double around) const;
+  HairCorner corner_at(const Eigen::Vector2d& at, double along, double around, const HairState& hair) const;
   float wetness_at(double along, double around) const;
   bool waits_under(const HairQuad& quad) const;
   void name_blocks(HairQuad quad);
@@ -56,13 +65,15 @@ class Stamp {
   void write_block(int row, int column, const Hair& centre, const HairSlope& by_block);
   void write_cells(const HairQuad& quad);
   void write_cell(std::size_t cell, const Hair& hair);
+  void take_off_hollows();
 
   const CoverageFrame& frame_;
-  const HairTexture& texture_;
-  const std::vector<InkLoad>& loads_;
+  const HairLook look_;
   FootprintMap& map_;
   bool streaky_ = false;
+  float split_shift_ = 0;
   std::vector<float> inked_;  // of each cell, where streaky
+  std::vector<float> reach_;
   std::vector<HairRow> rows_;
 
   // A bit a block, in rows of whole words.

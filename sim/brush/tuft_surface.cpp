@@ -85,6 +85,8 @@ ContactRing ring_of(const Station& s, int station, const SubmergedArc& arc) {
   ContactRing ring;
   ring.place = places_per_station * station;
   ring.along = s.along;
+  const double half = 0.5 * (s.major_a + s.major_b);
+  ring.hair = {s.press_mn_mm, std::max(0.0, elementary::square_root(half / s.minor) - 1)};
   for (int i = 0; i < ring_points; ++i) {
     const double around = arc.from + (arc.to - arc.from) * i / (ring_points - 1);
     ring.point[index(i)] = section_point(s, around).head<2>();
@@ -170,6 +172,7 @@ void append_tip(const Station& tip, int station, Contact& contact) {
     ContactRing ring;
     ring.place = places_per_station * (station + 1) + i;
     ring.along = 1;
+    ring.hair = {tip.press_mn_mm, 0};
     for (int j = 0; j < ring_points; ++j) {
       ring.point[index(j)] = tip.centre.head<2>() + Vector2d(half * (j - 2) / 2, y);
       ring.around[index(j)] = 0.25;
@@ -232,6 +235,26 @@ TuftSurface surface_of(const Tuft& tuft, const Variables& x, const Pose<Paper, H
   return surface;
 }
 
+// Each node's reaction is spread over the hair between its neighbours, most at the node.
+void press(const Tuft& tuft, const Multipliers& reactions_mn, TuftSurface& surface) {
+  const int n = tuft.segments;
+  PerNode<double> mn_mm{};
+  for (int k = 1; k <= n; ++k) {
+    const double above = tuft.length_mm[index(k - 1)];
+    const double below = k < n ? tuft.length_mm[index(k)] : 0;
+    mn_mm[index(k)] = std::max(0.0, reactions_mn[k - 1]) / (0.5 * (above + below));
+  }
+  double head_mm = 0;
+  int segment = 0;
+  for (Station& s : surface) {
+    const double mm = s.along * tuft.spec.tuft_length_mm;
+    while (segment + 1 < n && mm >= head_mm + tuft.length_mm[index(segment)])
+      head_mm += tuft.length_mm[index(segment++)];
+    const double part = std::clamp((mm - head_mm) / tuft.length_mm[index(segment)], 0.0, 1.0);
+    s.press_mn_mm = (1 - part) * mn_mm[index(segment)] + part * mn_mm[index(segment + 1)];
+  }
+}
+
 TuftSurface swollen(TuftSurface surface, double by_mm) {
   for (Station& s : surface) {
     s.major_a += by_mm;
@@ -250,6 +273,7 @@ TuftSurface between(const TuftSurface& a, const TuftSurface& b, double t) {
     if (!turned_over) mixed[i].down = ((1 - t) * a[i].down + t * b[i].down).normalized();
     mixed[i].major_a = (1 - t) * a[i].major_a + t * b[i].major_a;
     mixed[i].major_b = (1 - t) * a[i].major_b + t * b[i].major_b;
+    mixed[i].press_mn_mm = (1 - t) * a[i].press_mn_mm + t * b[i].press_mn_mm;
     mixed[i].minor = (1 - t) * a[i].minor + t * b[i].minor;
   }
   return mixed;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "signal/pose.h"
+#include "sim/brush/program.h"
 #include "sim/brush/skeleton.h"
 #include "sim/brush/tuft.h"
 
@@ -24,12 +25,16 @@ struct Station {
   double major_a = 0;
   double major_b = 0;
   double minor = 0;
-  bool flipped = false;  // `down` is the far side of the hair: the texture runs the other way round
+  double press_mn_mm = 0;  // of the paper against it, along the tuft
+  bool flipped = false;    // `down` is the far side of the hair: the texture runs the other way round
 };
 
 using TuftSurface = std::vector<Station>;  // root to tip; as many for every state of one tuft
 
 TuftSurface surface_of(const Tuft& tuft, const Variables& x, const Pose<Paper, Handle>& paper_from_handle);
+
+// Sets the pressure at every station from that at the nodes, mN (of nodes 1 to n).
+void press(const Tuft& tuft, const Multipliers& reactions_mn, TuftSurface& surface);
 
 // The surface with the ink that clings to it: every section swollen by `by_mm` (Chu 2.7.2).
 TuftSurface swollen(TuftSurface surface, double by_mm);
@@ -40,6 +45,12 @@ TuftSurface between(const TuftSurface& a, const TuftSurface& b, double t);
 // The largest distance by which a station moves over the paper, mm.
 double largest_motion_mm(const TuftSurface& a, const TuftSurface& b);
 
+// What the hair of a section feels.
+struct HairState {
+  double press_mn_mm = 0;
+  double spread = 0;  // how much wider the section is than round, 0 to …
+};
+
 // Points where one section dips into the paper, from side to side, seen from above.
 inline constexpr int ring_points = 5;
 struct ContactRing {
@@ -47,6 +58,7 @@ struct ContactRing {
   double along = 0;
   std::array<Eigen::Vector2d, ring_points> point;  // mm
   std::array<double, ring_points> around{};        // turns about the spine from the lateral line
+  HairState hair;
 };
 
 // What of the surface is in the paper: runs of rings, each run one patch of wetted paper.

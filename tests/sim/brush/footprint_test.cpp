@@ -228,7 +228,7 @@ TEST(Footprint, StreaksRunOnFromFrameToFrame) {
 TEST(Footprint, DryTuftLeavesStreaks) {
   const auto inked_share = [](float wetness, bool texture) {
     BrushSpec spec;
-    spec.hair_texture = texture;
+    spec.hair_texture = spec.split_map = texture;
     spec.soak_mm = 0;
     Brush brush(spec, 5);
     brush.load(wetness, {1, 0, 0, 0});
