@@ -53,15 +53,25 @@ Result<void> run(const Options& options) {
     if (!session) return tl::unexpected(session.error());
     before = std::move(*session);
   }
-  RecordedSettings recorded;
-  if (before) recorded = before->settings;
+  RecordedSettings recorded{{"manner", "hand"}};  // of a new painting
+  if (before) {
+    recorded = before->settings;
+    recorded["manner"] = "hand";
+  }
   if (setup.played) recorded = setup.played->settings;
   auto settings = options.painting.settings(recorded);
   if (!settings) return tl::unexpected(settings.error());
   setup.settings = std::move(*settings);
   if (before) {
     const ProgressLine line("painting what was there");
-    auto sheet = painted_sheet(*before, setup.settings, [&](double share) { line.show(share); });
+    // Painted as it was held then, however the brush is held now.
+    ReplaySettings then = setup.settings;
+    const auto manner = before->settings.find("manner");
+    then.wish.manner = {};
+    if (const auto held =
+            manner == before->settings.end() ? Result<PenManner>() : parse_manner(manner->second))
+      then.wish.manner = *held;
+    auto sheet = painted_sheet(*before, then, [&](double share) { line.show(share); });
     if (!sheet) return tl::unexpected(sheet.error());
     setup.settings.wish.sheet =
         Extent{Millimetres(sheet->columns * sheet->cell_mm), Millimetres(sheet->rows * sheet->cell_mm)};

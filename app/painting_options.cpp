@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "rig/calibrated_tablets.h"
+#include "rig/paint_box.h"
 #include "rig/share_folder.h"
 #include "sim/brush/brush_spec.h"
 #include "sim/ink/paper.h"
@@ -60,6 +61,11 @@ void PaintingOptions::add_to(CLI::App& command) {
                      "a brush of share/brushes, or a TOML file; default: the session's, else round-goat");
   command.add_option("--paper", paper,
                      "a paper of share/papers, or a TOML file; default: the session's, else xuan");
+  command.add_option("--palette", palette,
+                     "a palette of share/palettes, or a TOML file; default: the session's, else ink");
+  command.add_option("--manner", manner,
+                     "how a brush is held whose device does not sense its lean: upright, hand, left-hand, "
+                     "travel, fixed or fixed:RIGHT,TOWARDS in degrees; default: the session's, else upright");
   command.add_option("--size-mm", size_mm,
                      "the sheet, WxH; default: the session's, else the tablet's active area");
   command.add_option("--tablet-mm", tablet_mm, "active area of a tablet that does not say it, WxH");
@@ -121,6 +127,11 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
   auto paper_spec = read_paper(paper_text->text, paper_text->source);
   if (!paper_spec) return tl::unexpected(paper_spec.error());
 
+  const auto box_text = named("palettes", palette, recorded, "palette", "ink");
+  if (!box_text) return tl::unexpected(box_text.error());
+  const auto box = read_paint_box(box_text->text, box_text->source);
+  if (!box) return tl::unexpected(box.error());
+
   const auto cell = number(given(cell_mm, recorded, "cell_mm", "0.1"));
   if (!cell || !(*cell >= 0.02 && *cell <= 1))
     return failure(Fault::usage, "--cell-mm takes 0.02 to 1 millimetre");
@@ -140,6 +151,9 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
     if (!calibration) return tl::unexpected(calibration.error());
     settings.wish.calibrations.push_back(std::move(*calibration));
   }
+  const auto held = parse_manner(given(manner, recorded, "manner", "upright"));
+  if (!held) return tl::unexpected(held.error());
+  settings.wish.manner = *held;
   const auto until = parse_settle(settle);
   if (!until) return tl::unexpected(until.error());
   settings.settle = *until;
@@ -156,12 +170,14 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
   setup.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   setup.instruction_set = instruction_set_named(isa);
   setup.backend = backend == "auto" ? best_ink_backend() : backend == "gl" ? InkBackend::gl : InkBackend::cpu;
-  settings.palette.pigments = {pigments()[0]};
+  settings.palette.pigments = box->pigments;
   settings.to_record = {{"brush", brush_text->text},
                         {"paper", paper_text->text},
+                        {"palette", box_text->text},
                         {"cell_mm", shortest(*cell)},
                         {"ink", supply},
-                        {"flow", flowing}};
+                        {"flow", flowing},
+                        {"manner", as_text(*held)}};
   return settings;
 }
 

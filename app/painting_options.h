@@ -14,13 +14,15 @@ class App;
 
 namespace fude {
 
-// How a painting stood when it was recorded: the settings of a session. `brush` and `paper` are TOML text,
-// `sheet_mm` and `cell_mm` millimetres, `ink` and `flow` as the options of those names.
+// How a painting stood when it was recorded: the settings of a session. `brush`, `paper` and `palette` are
+// TOML text, `sheet_mm` and `cell_mm` millimetres, `ink`, `flow` and `manner` as the options of those names.
 using RecordedSettings = std::map<std::string, std::string>;
 
 // What is not given is as the session has it; else a round goat brush and ink on Xuan paper of 0.1 mm cells.
 struct PaintingOptions {
   std::string brush;
+  std::string palette;
+  std::string manner;
   std::string paper;
   std::string size_mm;
   std::string tablet_mm;

@@ -109,7 +109,7 @@ struct Session {
 
 // Reads a whole session. One that was not closed is repaired first and reads as not complete.
 // Errors: not_found, no_access, busy, malformed (no session, damaged, hostile), unsupported (newer).
-// Formats 1 to 3.
+// Formats 1 to 4.
 Result<Session> read_session(const std::filesystem::path& path);
 
 }  // namespace fude

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "capture/action_words.h"
 #include "capture/database.h"
 #include "capture/sample_columns.h"
 #include "capture/session.h"

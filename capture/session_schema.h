@@ -10,7 +10,7 @@ namespace fude::session_schema {
 
 inline constexpr int application_id = 0x66756465;  // "fude"
 inline constexpr int oldest_format = 1;            // pens alone; still read
-inline constexpr int format = 3;
+inline constexpr int format = 4;
 
 // As `CREATE TABLE` statements, which is how the file itself keeps them.
 std::vector<std::string> tables(int of_format);

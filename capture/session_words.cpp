@@ -1,8 +1,6 @@
 #include "capture/session_words.h"
 
 #include <array>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace fude {
@@ -118,41 +116,5 @@ template std::optional<DeviceKind> value_for<DeviceKind>(std::string_view);
 template std::optional<PoseOrigin> value_for<PoseOrigin>(std::string_view);
 template std::optional<PixelFormat> value_for<PixelFormat>(std::string_view);
 template std::optional<ExposureMoment> value_for<ExposureMoment>(std::string_view);
-
-ActionWords words_for(const Action& action) {
-  struct Visitor {
-    ActionWords operator()(const LoadBrush& load) const {
-      return {"load", nlohmann::json{{"wetness", load.wetness}, {"strength", load.strength}}.dump()};
-    }
-    ActionWords operator()(const ReshapeBrush&) const { return {"reshape", "{}"}; }
-    ActionWords operator()(const DrySheet&) const { return {"dry", "{}"}; }
-    ActionWords operator()(const Undo&) const { return {"undo", "{}"}; }
-    ActionWords operator()(const Redo&) const { return {"redo", "{}"}; }
-  };
-  return std::visit(Visitor{}, action.what);
-}
-
-Result<Action> action_from(Timestamp time, const std::string& verb, const std::string& arguments) {
-  if (verb == "reshape") return Action{time, ReshapeBrush{}};
-  if (verb == "dry") return Action{time, DrySheet{}};
-  if (verb == "undo") return Action{time, Undo{}};
-  if (verb == "redo") return Action{time, Redo{}};
-  const Error bad{Fault::malformed, "the session holds an action '" + verb + "' that cannot be read"};
-  if (verb != "load") return tl::unexpected(bad);
-  const auto json = nlohmann::json::parse(arguments, nullptr, false);
-  if (!json.is_object() || !json.contains("wetness") || !json["wetness"].is_number() ||
-      !json.contains("strength") || !json["strength"].is_array() ||
-      json["strength"].size() != concentrations_per_group)
-    return tl::unexpected(bad);
-  LoadBrush load;
-  load.wetness = json["wetness"].get<float>();
-  if (!(load.wetness >= 0 && load.wetness <= 1)) return tl::unexpected(bad);
-  for (std::size_t i = 0; i < concentrations_per_group; ++i) {
-    if (!json["strength"][i].is_number()) return tl::unexpected(bad);
-    load.strength[i] = json["strength"][i].get<float>();
-    if (!(load.strength[i] >= 0 && load.strength[i] <= 100)) return tl::unexpected(bad);
-  }
-  return Action{time, load};
-}
 
 }  // namespace fude

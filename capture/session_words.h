@@ -1,16 +1,13 @@
-// The words a session file uses for enumerations, and the JSON of actions.
+// The words a session file uses for enumerations.
 #pragma once
 
 #include <optional>
-#include <string>
 #include <string_view>
 
-#include "signal/action.h"
 #include "signal/camera_frame.h"
 #include "signal/device.h"
 #include "signal/pen_sample.h"
 #include "signal/pose.h"
-#include "signal/result.h"
 #include "signal/transfer.h"
 
 namespace fude {
@@ -28,14 +25,5 @@ std::string_view word_for(ExposureMoment moment);
 // The value for a word; nothing for a word that the format does not have.
 template <class T>
 std::optional<T> value_for(std::string_view word);
-
-struct ActionWords {
-  std::string verb;
-  std::string arguments;  // a JSON object
-};
-ActionWords words_for(const Action& action);
-
-// Errors: malformed, naming the verb.
-Result<Action> action_from(Timestamp time, const std::string& verb, const std::string& arguments);
 
 }  // namespace fude

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "capture/action_words.h"
 #include "capture/session_schema.h"
 #include "capture/session_words.h"
 

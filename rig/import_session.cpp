@@ -170,7 +170,8 @@ Result<std::vector<ImportedStream>> write_streams(SessionWriter& out,
 Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecording> recordings,
                                                      std::span<const Action> actions,
                                                      const std::string& origin,
-                                                     const std::filesystem::path& session, bool overwrite) {
+                                                     const std::filesystem::path& session, bool overwrite,
+                                                     const std::map<std::string, std::string>& settings) {
   std::error_code error;
   if (!overwrite && std::filesystem::exists(session, error))
     return failure(Fault::exists, session.string() + " exists already; choose another name or give --force");
@@ -182,6 +183,8 @@ Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecordin
     auto out = SessionWriter::create(unfinished);
     if (!out) return tl::unexpected(out.error());
     if (auto r = out->set("imported_from", origin); !r) return tl::unexpected(r.error());
+    for (const auto& [key, value] : settings)
+      if (auto r = out->set(key, value); !r) return tl::unexpected(r.error());
     auto streams = write_streams(*out, recordings, actions);
     if (!streams) return streams;
     if (auto r = out->close(); !r) return tl::unexpected(r.error());

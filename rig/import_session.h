@@ -35,12 +35,14 @@ struct ImportReceipt {
   std::vector<ImportedStream> streams;
 };
 
-// Writes recordings, and what the painter did, as one session: it appears whole or not at all.
+// Writes recordings, what the painter did and how things stood (`settings`), as one session: it appears whole
+// or not at all.
 // Errors: exists where `session` may not be replaced; no_access; storage.
 Result<std::vector<ImportedStream>> write_recordings(std::span<const RawRecording> recordings,
                                                      std::span<const Action> actions,
                                                      const std::string& origin,
-                                                     const std::filesystem::path& session, bool overwrite);
+                                                     const std::filesystem::path& session, bool overwrite,
+                                                     const std::map<std::string, std::string>& settings = {});
 
 struct ImportWish {
   ImportOptions options;

@@ -22,6 +22,7 @@ std::vector<TimedInput> inputs_of(const Session& session, const SheetPlan& plan,
   auto pen = session.pens.begin();
   auto action = session.actions.begin();
   Step reached = 0;
+  HeldPens held(plan.manner, plan.sheet);
   const auto add = [&](std::optional<Step> applied, Timestamp time, PaintingInput input) {
     reached = std::max(reached, applied ? *applied : step_at(time - start, step_s));
     inputs.push_back({reached, std::move(input)});
@@ -29,7 +30,8 @@ std::vector<TimedInput> inputs_of(const Session& session, const SheetPlan& plan,
   while (pen != session.pens.end() || action != session.actions.end()) {
     if (action == session.actions.end() || (pen != session.pens.end() && pen->order < action->order)) {
       if (const auto mapping = plan.mappings.find(pen->device); mapping != plan.mappings.end())
-        add(pen->applied, pen->sample.time.host, brush_move(pen->sample, mapping->second, reach));
+        add(pen->applied, pen->sample.time.host,
+            brush_move(held.held(pen->device, pen->sample, mapping->second), mapping->second, reach));
       ++pen;
     } else {
       add(action->applied, action->action.time, action->action);

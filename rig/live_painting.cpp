@@ -42,9 +42,11 @@ double milliseconds(Duration d) { return seconds(d) * 1e3; }
 
 }  // namespace
 
-LivePainting::LivePainting(Painting painting, const PenReach& reach, Recorder* recorder)
+LivePainting::LivePainting(Painting painting, const PenReach& reach, Recorder* recorder,
+                           const PenManner& manner, Extent sheet)
     : history_(std::move(painting), snapshots_kept),
       reach_(reach),
+      held_(manner, sheet),
       recorder_(recorder),
       thread_([this] { serve(); }) {
   std::unique_lock lock(mutex_);
@@ -79,10 +81,11 @@ void LivePainting::apply(const LiveInput& input) {
     return;
   }
   const auto& pen = std::get<LivePen>(input);
-  history_.apply(brush_move(pen.sample, pen.mapping, reach_));
+  const PenSample held = held_.held(pen.device, pen.sample, pen.mapping);
+  history_.apply(brush_move(held, pen.mapping, reach_));
   if (recorder_) recorder_->add(RecordedPen{0, pen.device, pen.sample, step});
   const std::lock_guard lock(mutex_);
-  status_.pen = pen.sample;
+  status_.pen = held;
   status_.nib_mm = nib_on_paper(pen.sample, pen.mapping);
   status_.latency_ms = milliseconds(now() - pen.sample.time.host);
   if (latencies_ms_.size() < latencies_kept) latencies_ms_.push_back(status_.latency_ms);

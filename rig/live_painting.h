@@ -12,6 +12,7 @@
 
 #include "rig/history.h"
 #include "rig/inputs.h"
+#include "rig/pen_manner.h"
 #include "rig/recorder.h"
 #include "rig/replay.h"
 #include "signal/result.h"
@@ -40,8 +41,10 @@ struct LiveStatus {
 
 class LivePainting {
  public:
-  // `recorder` may be null; it must outlive the painting. Returns when the clock of the painting runs.
-  LivePainting(Painting painting, const PenReach& reach, Recorder* recorder);
+  // `recorder` may be null; it must outlive the painting. `manner` and `sheet` as a replay has them. Returns
+  // when the clock of the painting runs.
+  LivePainting(Painting painting, const PenReach& reach, Recorder* recorder, const PenManner& manner = {},
+               Extent sheet = {});
   ~LivePainting();
   LivePainting(const LivePainting&) = delete;
   LivePainting& operator=(const LivePainting&) = delete;
@@ -77,6 +80,7 @@ class LivePainting {
 
   History history_;
   PenReach reach_;
+  HeldPens held_;
   Recorder* recorder_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;

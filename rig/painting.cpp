@@ -90,8 +90,8 @@ bool Painting::move(PenEnd end, const BrushInput& input) {
 
 void Painting::act(const Action& action) {
   give_back_what_is_due();
-  if (const auto* load = std::get_if<LoadBrush>(&action.what))
-    brushes_[static_cast<std::size_t>(PenEnd::tip)].load(load->wetness, load->strength);
+  if (const auto* care = std::get_if<BrushCare>(&action.what))
+    brushes_[static_cast<std::size_t>(PenEnd::tip)].tend(*care);
   if (std::holds_alternative<ReshapeBrush>(action.what))
     for (Brush& brush : brushes_) brush.reshape();
   if (std::holds_alternative<DrySheet>(action.what)) pour({.what = DryPaper{}});

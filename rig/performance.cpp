@@ -108,10 +108,8 @@ Performed perform(const Performance& performance) {
   std::int64_t reports = 0;
   PerformedKnot at = performance.strokes.front().knots.front();
   for (const PerformedStroke& stroke : performance.strokes) {
-    if (stroke.load)
-      performed.actions.push_back(
-          {Timestamp(Duration(static_cast<std::int64_t>(static_cast<double>(reports) * dt_s * 1e9))),
-           *stroke.load});
+    const Timestamp begin(Duration(static_cast<std::int64_t>(static_cast<double>(reports) * dt_s * 1e9)));
+    for (const auto& what : stroke.prepare) performed.actions.push_back({begin, what});
     const PerformedKnot& start = stroke.knots.front();
     const auto in_air = static_cast<std::int64_t>(stroke.rest_s * performance.rate_hz);
     for (std::int64_t i = 0; i < in_air; ++i) {
@@ -137,7 +135,10 @@ Performed perform(const Performance& performance) {
 Result<void> write_performance(const Performance& performance, const std::filesystem::path& session,
                                bool overwrite) {
   const Performed performed = perform(performance);
-  return write_recordings({&performed.recording, 1}, performed.actions, "performance", session, overwrite)
+  std::map<std::string, std::string> settings;
+  if (performance.palette) settings["palette"] = performance.palette->toml;
+  return write_recordings({&performed.recording, 1}, performed.actions, "performance", session, overwrite,
+                          settings)
       .map([](const std::vector<ImportedStream>&) {});
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "capture/import/recording.h"
+#include "rig/paint_box.h"
 #include "signal/action.h"
 #include "signal/result.h"
 #include "signal/units.h"
@@ -29,8 +30,8 @@ struct PerformedStroke {
   std::vector<PerformedKnot> knots;  // two at least; the last is a beat, as the first
   Radians tilt_x;
   Radians tilt_y;
-  double rest_s = 0.3;            // in the air before it
-  std::optional<LoadBrush> load;  // dips the brush first
+  double rest_s = 0.3;                          // in the air before it
+  std::vector<decltype(Action::what)> prepare;  // done to the brush first, in this order
 };
 
 struct Performance {
@@ -38,10 +39,12 @@ struct Performance {
   double rate_hz = 200;
   Millimetres width;
   Millimetres height;
+  std::optional<PaintBox> palette;  // none: ink alone
   std::vector<PerformedStroke> strokes;
 };
 
-// From TOML (docs/performances.md). Errors: malformed, naming `source` and the stroke.
+// From TOML (docs/performances.md). Errors: malformed, naming `source` and the stroke; those of
+// find_paint_box.
 Result<Performance> read_performance(std::string_view toml, const std::string& source);
 
 struct Performed {
@@ -53,7 +56,7 @@ struct Performed {
 // Hogan 1985); position along a centripetal Catmull-Rom curve, pressure monotone between the knots.
 Performed perform(const Performance& performance);
 
-// The performance as a session. Errors: as import_session.
+// The performance as a session, with its palette. Errors: as import_session.
 Result<void> write_performance(const Performance& performance, const std::filesystem::path& session,
                                bool overwrite);
 

@@ -1,8 +1,10 @@
 #include <toml++/toml.h>
 
 #include <cmath>
+#include <utility>
 
 #include "rig/performance.h"
+#include "rig/read_care.h"
 
 namespace fude {
 namespace {
@@ -27,18 +29,23 @@ std::optional<PerformedKnot> knot_from(const toml::node& node) {
   return PerformedKnot{*x, *y, *pressure, beat};
 }
 
-std::optional<PerformedStroke> stroke_from(const toml::table& table) {
+std::optional<PerformedStroke> stroke_from(const toml::table& table, const PaintBox& box) {
   PerformedStroke stroke;
   stroke.name = table["name"].value_or("");
   stroke.tilt_x = degrees(table["tilt_x_deg"].value_or(0.0));
   stroke.tilt_y = degrees(table["tilt_y_deg"].value_or(0.0));
   stroke.rest_s = table["rest_s"].value_or(stroke.rest_s);
-  if (const toml::table* load = table["load"].as_table()) {
-    LoadBrush dip;
-    dip.wetness = (*load)["wetness"].value_or(1.0F);
-    dip.strength[0] = (*load)["ink"].value_or(1.0F);
-    dip.strength[glue_channel] = (*load)["glue"].value_or(0.1F);
-    stroke.load = dip;
+  if (const toml::array* rows = table["prepare"].as_array()) {
+    auto cares = cares_from(*rows, box);
+    if (!cares) return std::nullopt;
+    stroke.prepare = std::move(*cares);
+  } else if (table.contains("prepare")) {
+    return std::nullopt;
+  }
+  if (const toml::table* row = table["load"].as_table()) {
+    const auto load = load_from(*row, box);
+    if (!load) return std::nullopt;
+    stroke.prepare.emplace_back(*load);
   }
   const toml::array* knots = table["knots"].as_array();
   if (!knots || !(stroke.rest_s > 0 && stroke.rest_s <= longest_beat_s)) return std::nullopt;
@@ -72,14 +79,22 @@ Result<Performance> read_performance(std::string_view text, const std::string& s
     return failure(
         Fault::malformed,
         source + ": a performance has a name, rate_hz (10 to 2000), width_mm and height_mm (1 to 2000)");
+  PaintBox box{.name = "ink", .pigments = {pigments()[0]}, .toml = {}};
+  if (const auto name = table["palette"].value<std::string>()) {
+    auto palette = find_paint_box(*name);
+    if (!palette) return tl::unexpected(palette.error());
+    box = *palette;
+    performance.palette = std::move(*palette);
+  }
   if (const toml::array* strokes = table["stroke"].as_array())
     for (const toml::node& node : *strokes) {
-      const auto stroke = node.as_table() ? stroke_from(*node.as_table()) : std::nullopt;
+      const auto stroke = node.as_table() ? stroke_from(*node.as_table(), box) : std::nullopt;
       if (!stroke)
         return failure(Fault::malformed,
                        source + ": line " + std::to_string(node.source().begin.line) +
                            ": a stroke has knots [x, y, pressure] or [x, y, pressure, seconds], two "
-                           "at least, the last with seconds");
+                           "at least, the last with seconds; what loads it and prepares it, and colours of "
+                           "its palette, as docs/performances.md tells");
       performance.strokes.push_back(*stroke);
     }
   if (performance.strokes.empty()) return failure(Fault::malformed, source + ": no [[stroke]]");

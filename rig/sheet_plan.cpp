@@ -51,6 +51,7 @@ Result<TabletMapping> mapping_on(const SheetPlan& plan, const DeviceDescription&
 
 Result<SheetPlan> plan_sheet(const Session& session, const SheetWish& wish) {
   SheetPlan plan;
+  plan.manner = wish.manner;
   std::vector<StoredCalibration> calibrations;
   for (const RecordedCalibration& carried : session.calibrations)
     if (auto calibration = calibration_from_toml(carried.toml, carried.name))

@@ -7,6 +7,7 @@
 #include "calibration/pen_mapping.h"
 #include "capture/session.h"
 #include "rig/calibrated_tablets.h"
+#include "rig/pen_manner.h"
 #include "signal/result.h"
 
 namespace fude {
@@ -15,6 +16,7 @@ struct SheetPlan {
   Extent sheet;
   std::map<DeviceNumber, TabletMapping> mappings;  // devices with pen samples only
   std::vector<CalibratedTablet> calibrated;        // whether they have sent samples or not
+  PenManner manner;
 };
 
 struct SheetWish {
@@ -22,6 +24,7 @@ struct SheetWish {
   std::optional<Extent> tablet;  // --tablet-mm, for devices that do not state a size
   // Named or kept: before those that the session carries.
   std::vector<StoredCalibration> calibrations;
+  PenManner manner;  // of pens that do not sense how they lean
 };
 
 // Without a wish the sheet is the largest active area of the devices that sent samples; of one that was

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <string>
 
 namespace fude {
 namespace {
@@ -26,9 +27,19 @@ void draw_tilt(const PenSample& pen) {
   ImGui::Dummy(ImVec2(2 * radius, 2 * radius));
 }
 
+// What the brush is loaded with.
+void draw_colours(const std::vector<Pigment>& pigments, CareChoice& care) {
+  for (std::size_t i = 0; i < pigments.size(); ++i)
+    if (ImGui::RadioButton(std::string(pigments[i].name).c_str(), care.pigment == i)) care.pigment = i;
+  ImGui::SliderFloat("strength", &care.strength, 0, 3);
+  ImGui::SliderFloat("wetness", &care.wetness, 0, 1);
+  ImGui::SliderFloat("dip, mm", &care.depth_mm, 0, 40);
+}
+
 }  // namespace
 
-PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms) {
+PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms,
+                       const std::vector<Pigment>& pigments, CareChoice& care) {
   PanelChoice choice;
   ImGui::SetNextWindowPos(ImVec2(12, 12), ImGuiCond_FirstUseEver);
   ImGui::Begin("fude", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
@@ -53,9 +64,21 @@ PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen
   button("Undo (Ctrl+Z)", StudioKey::undo, status.can_undo);
   ImGui::SameLine();
   button("Redo (Shift+Ctrl+Z)", StudioKey::redo, status.can_redo);
-  button("Load ink (L)", StudioKey::load, true);
+  draw_colours(pigments, care);
+  button("Load (L)", StudioKey::load, true);
   ImGui::SameLine();
+  button("Gradient (G)", StudioKey::gradient, true);
+  ImGui::SameLine();
+  button("Dip (I)", StudioKey::dip, true);
+  button("Rinse (W)", StudioKey::rinse, true);
+  ImGui::SameLine();
+  button("Wipe (E)", StudioKey::wipe, true);
+  ImGui::SameLine();
+  button("Blot (B)", StudioKey::blot, true);
+  ImGui::SameLine();
+  button("Roll (O)", StudioKey::roll, true);
   button("Reshape (R)", StudioKey::reshape, true);
+  ImGui::SameLine();
   button("Dry sheet (D)", StudioKey::dry, true);
   ImGui::SameLine();
   button("Fit (F)", StudioKey::fit, true);

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "app/studio/care_choice.h"
 #include "app/studio/mouse_pen.h"
 #include "app/studio/script.h"
 #include "rig/live_painting.h"
+#include "sim/optics/pigment.h"
 
 namespace fude {
 
@@ -14,7 +17,9 @@ struct PanelChoice {
   bool save = false;
 };
 
-// Draws it and says what was chosen; moves the mouse pen's pressure. `mouse`: the pen shown is the mouse.
-PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms);
+// Draws it and says what was chosen; changes the mouse pen's pressure and what the brush is loaded with, of
+// these pigments. `mouse`: the pen shown is the mouse.
+PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms,
+                       const std::vector<Pigment>& pigments, CareChoice& care);
 
 }  // namespace fude

@@ -16,8 +16,10 @@ std::optional<double> number(std::istringstream& words) {
 
 std::optional<StudioEvent> event_of(const std::string& verb, std::istringstream& words) {
   static const std::map<std::string, StudioKey> keys = {
-      {"undo", StudioKey::undo},       {"redo", StudioKey::redo}, {"load", StudioKey::load},
-      {"reshape", StudioKey::reshape}, {"dry", StudioKey::dry},   {"fit", StudioKey::fit}};
+      {"undo", StudioKey::undo},       {"redo", StudioKey::redo},   {"load", StudioKey::load},
+      {"dip", StudioKey::dip},         {"rinse", StudioKey::rinse}, {"wipe", StudioKey::wipe},
+      {"blot", StudioKey::blot},       {"roll", StudioKey::roll},   {"gradient", StudioKey::gradient},
+      {"reshape", StudioKey::reshape}, {"dry", StudioKey::dry},     {"fit", StudioKey::fit}};
   if (verb == "press") return Button{true};
   if (verb == "release") return Button{false};
   if (verb == "quit") return Quit{};

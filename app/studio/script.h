@@ -1,7 +1,8 @@
 // A window driven by a script: events of the mouse and the keyboard at stated times, as a hand would give
 // them. Text, one event a line; `#` begins a comment. Places are millimetres on the paper.
 //
-//   SECONDS move X Y        SECONDS key NAME       (undo redo load reshape dry fit)
+//   SECONDS move X Y        SECONDS key NAME       (undo redo load gradient dip rinse wipe blot
+//                                             roll reshape dry fit)
 //   SECONDS press           SECONDS zoom FACTOR    (about the middle of the window)
 //   SECONDS release         SECONDS save FILE      (the sheet as it stands, a PNG)
 //   SECONDS pressure P      SECONDS shot FILE      (the window as it is seen, a PNG)
@@ -16,7 +17,7 @@
 
 namespace fude {
 
-enum class StudioKey { undo, redo, load, reshape, dry, fit };
+enum class StudioKey { undo, redo, load, gradient, dip, rinse, wipe, blot, roll, reshape, dry, fit };
 
 struct MoveTo {
   double x_mm;

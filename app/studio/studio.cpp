@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/painting_options.h"
+#include "app/studio/care_choice.h"
 #include "app/studio/mouse_pen.h"
 #include "app/studio/panel.h"
 #include "app/studio/sheet_image.h"
@@ -63,7 +64,7 @@ class Studio {
         step_ms_(painting.step_s() * 1e3),
         mouse_{.sheet = plan.sheet},
         passport_(setup.settings.wish.calibrations),
-        live_(std::move(painting), setup.settings.reach, recorder) {
+        live_(std::move(painting), setup.settings.reach, recorder, plan.manner, plan.sheet) {
     if (setup.played)
       for (const RecordedDevice& device : setup.played->devices) {
         numbers_[device.number] = ++devices_;
@@ -183,6 +184,12 @@ class Studio {
     if (key == "Ctrl+Z") handle(StudioKey::undo);
     if (key == "Shift+Ctrl+Z" || key == "Ctrl+Y") handle(StudioKey::redo);
     if (key == "L") handle(StudioKey::load);
+    if (key == "G") handle(StudioKey::gradient);
+    if (key == "I") handle(StudioKey::dip);
+    if (key == "W") handle(StudioKey::rinse);
+    if (key == "E") handle(StudioKey::wipe);
+    if (key == "B") handle(StudioKey::blot);
+    if (key == "O") handle(StudioKey::roll);
     if (key == "R") handle(StudioKey::reshape);
     if (key == "D") handle(StudioKey::dry);
     if (key == "F") handle(StudioKey::fit);
@@ -210,15 +217,13 @@ class Studio {
   void on(const Shot& shot) { shots_.push_back(shot.file); }
   void on(const Quit&) { quitting_ = true; }
   void on(StudioKey key) {
+    if (const auto care = care_for(key, care_)) return live_.act({now(), *care});
     switch (key) {
       case StudioKey::undo:
         live_.act({now(), Undo{}});
         break;
       case StudioKey::redo:
         live_.act({now(), Redo{}});
-        break;
-      case StudioKey::load:
-        live_.act({now(), setup_.settings.painting.load});
         break;
       case StudioKey::reshape:
         live_.act({now(), ReshapeBrush{}});
@@ -228,6 +233,8 @@ class Studio {
         break;
       case StudioKey::fit:
         view_.fit(sheet_mm_);
+        break;
+      default:
         break;
     }
   }
@@ -303,7 +310,8 @@ class Studio {
                     point(top_left), point(bottom_right));
     if (pen_near_ && !ImGui::GetIO().WantCaptureMouse) ImGui::SetMouseCursor(ImGuiMouseCursor_None);
     if (status.pen.in_proximity) draw_tuft(canvas, view_, status.tuft);
-    const PanelChoice choice = draw_panel(status, mouse_shown_, mouse_, step_ms_);
+    const PanelChoice choice =
+        draw_panel(status, mouse_shown_, mouse_, step_ms_, setup_.settings.palette.pigments, care_);
     if (choice.key) handle(*choice.key);
     if (choice.save) handle(SaveAs{free_picture_name()});
     const std::lock_guard lock(tablets_mutex_);
@@ -319,6 +327,7 @@ class Studio {
   int rows_;
   double step_ms_;
   MousePen mouse_;
+  CareChoice care_;
   TabletMapping mouse_mapping_;
   std::map<DeviceNumber, DeviceNumber> numbers_;  // of the played session's devices, here
   DeviceNumber devices_ = 0;

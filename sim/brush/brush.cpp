@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/brush/dipping.h"
+
 namespace fude {
 namespace {
 
@@ -48,7 +50,8 @@ void take_worse(SolveReport& sum, const SolveReport& step) {
 
 }  // namespace
 
-Brush::Brush(const BrushSpec& spec, std::uint64_t seed) : tuft_(make_tuft(spec)), texture_(spec, seed) {
+Brush::Brush(const BrushSpec& spec, std::uint64_t seed)
+    : tuft_(make_tuft(spec)), flow_(flow_in(tuft_)), texture_(spec, seed) {
   state_.tuft = rest_state(tuft_);
   state_.loading = dry_loading(tuft_);
 }
@@ -59,7 +62,7 @@ void Brush::away(double elapsed_s) {
   pose.translation.z() = out_of_reach_mm;
   advance(tuft_, state_.tuft, pose, elapsed_s, true);
   state_.footprint = {};
-  even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, longest_flow_s));
+  even_out(state_.loading, flow_, std::min(elapsed_s, longest_flow_s));
 }
 
 // The tuft with the ink that clings to it, as its last footprint shows it.
@@ -105,7 +108,7 @@ BrushFrame Brush::move(const BrushInput& input) {
   const std::vector<InkLoad> looks = offered(state_.loading);
   std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, {texture_, looks, grain_.get()});
   if (!map) {
-    even_out(state_.loading, tuft_.spec.moisture_flow_per_s, std::min(elapsed_s, longest_flow_s));
+    even_out(state_.loading, flow_, std::min(elapsed_s, longest_flow_s));
     return frame;
   }
   std::vector<InkLoad> loads = draw_for(*map, elapsed_s);
@@ -114,17 +117,16 @@ BrushFrame Brush::move(const BrushInput& input) {
 }
 
 std::vector<InkLoad> Brush::draw_for(const FootprintMap& map, double elapsed_s) {
-  const double rate = tuft_.spec.moisture_flow_per_s;
   const double step_s = std::min(elapsed_s, longest_flow_s);
   if (film_ul_mm2_ == 0) {
-    even_out(state_.loading, rate, step_s);
+    even_out(state_.loading, flow_, step_s);
     return offered(state_.loading);
   }
   PerPatch demand_ul{};
   for (std::size_t i = 0; i < map.fresh.size(); ++i)
     demand_ul[map.patch[i]] += static_cast<double>(map.fresh[i]);
   for (double& demand : demand_ul) demand *= film_ul_mm2_ * map.cell_mm * map.cell_mm;
-  return draw(state_.loading, rate, step_s, demand_ul);
+  return draw(state_.loading, flow_, step_s, demand_ul);
 }
 
 void Brush::take(const Exchange& exchange) { book(state_.loading, exchange); }
@@ -133,8 +135,9 @@ void Brush::expect_film(double ul_per_mm2) { film_ul_mm2_ = ul_per_mm2; }
 
 void Brush::paint_over(std::shared_ptr<PaperGrain> grain) { grain_ = std::move(grain); }
 
-void Brush::load(float wetness, const Concentrations& strength) {
-  fill(state_.loading, static_cast<double>(wetness), strength);
+void Brush::tend(const BrushCare& care) {
+  fude::tend(state_.loading, tuft_, flow_, care, AcrossBrush{});
+  if (std::holds_alternative<WipeBrush>(care)) reshape();
 }
 
 void Brush::set_endless(bool endless) { state_.loading.endless = endless; }

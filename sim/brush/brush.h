@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "signal/action.h"
 #include "signal/brush_input.h"
 #include "signal/ink_event.h"
 #include "signal/paper_grain.h"
@@ -81,8 +82,9 @@ class Brush {
   // The relief of the paper, which dry hair feels. None, as at first: it is flat.
   void paint_over(std::shared_ptr<PaperGrain> grain);
 
-  // Dips: every patch to `wetness` of its capacity, with ink of this strength.
-  void load(float wetness, const Concentrations& strength);
+  // Fills, dips, rinses, wipes, blots or rolls it; wiping straightens it too.
+  void tend(const BrushCare& care);
+  void load(float wetness, const Concentrations& strength) { tend(LoadBrush{wetness, strength}); }
   void set_endless(bool endless);  // the tuft stays as loaded
 
   // Straightens the tuft, as on the rim of the ink stone; keeps its ink.
@@ -101,6 +103,7 @@ class Brush {
   std::vector<InkLoad> draw_for(const FootprintMap& map, double elapsed_s);
 
   Tuft tuft_;
+  HairFlow flow_;
   HairTexture texture_;
   std::shared_ptr<PaperGrain> grain_;
   double film_ul_mm2_ = 0;

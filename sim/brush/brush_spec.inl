@@ -50,6 +50,9 @@ BRUSH_PARAMETER(pore_strength_mn, "mN", 0.1, 1e4, 12, "force at which the tip ju
 // Ink in the tuft
 BRUSH_PARAMETER(capacity_ul, "ul", 1, 5000, 160, "water in a full tuft")
 BRUSH_PARAMETER(moisture_flow_per_s, "1/s", 0, 50, 1.5, "how fast moisture evens out; along the hair a full tuft could empty itself so often")
+BRUSH_PARAMETER(inward_flow_per_s, "1/s", 0, 50, 8, "how fast the inside of the tuft and its surface even out")
+BRUSH_PARAMETER(pigment_spread_mm2_per_s, "mm2/s", 0, 10, 0.05, "how fast pigment spreads in wet hair that rests")
+BRUSH_PARAMETER(absorbency_per_s, "1/s", 0.1, 100, 6, "how fast hair takes up what it stands in, and gives up to a cloth")
 BRUSH_PARAMETER(soak_mm, "mm", 0, 3, 0.35, "how far ink swells a soaked tuft; less as it dries")
 BRUSH_PARAMETER(hair_count, "count", 8, 2000, 220, "hair bundles around the tuft, for streaks")
 BRUSH_PARAMETER(streak_wetness, "1", 0, 1, 0.45, "wetness below which the lower hair leaves no ink")

@@ -8,7 +8,7 @@
 namespace fude {
 namespace {
 
-constexpr std::uint64_t signature = 0x3230687375726266ULL;  // "fbrush02"
+constexpr std::uint64_t signature = 0x3330687375726266ULL;  // "fbrush03"
 
 class Writer {
  public:
@@ -118,11 +118,14 @@ void walk(Archive& archive, State& state) {
   archive(tuft.in_contact);
   pose(archive, tuft.paper_from_handle);
   archive(tuft.placed);
-  for (auto& patch : state.loading.patches) {
-    archive(patch.capacity_ul);
-    archive(patch.water_ul);
-    for (auto& volume : patch.pigment_ul) archive(volume);
-  }
+  const auto part = [&](auto& hair) {
+    archive(hair.capacity_ul);
+    archive(hair.water_ul);
+    for (auto& volume : hair.pigment_ul) archive(volume);
+  };
+  for (auto& patch : state.loading.patches) part(patch);
+  for (auto& row : state.loading.inside) part(row);
+  archive(state.loading.unspread_s);
   archive(state.loading.endless);
   archive.sequence(state.loading.set_aside);
   for (auto& withdrawal : state.loading.set_aside)

@@ -17,7 +17,9 @@ constexpr int blocks_per_word = 64;
 constexpr std::size_t tip_patches = 2 * patches_around;  // the last quarter of the tuft
 
 std::uint16_t patch_of(const Hair& hair) {
-  return static_cast<std::uint16_t>(patch_at(static_cast<double>(hair[0]), static_cast<double>(hair[1]) - 1));
+  // At the rim of a block the straight way may lead beyond the tuft.
+  const double around = std::max(static_cast<double>(hair[1]) - 1, -1.0);
+  return static_cast<std::uint16_t>(patch_at(static_cast<double>(hair[0]), around));
 }
 
 bool any(const auto& words) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/studio/care_choice.h"
 #include "app/studio/mouse_pen.h"
 #include "app/studio/script.h"
 #include "app/studio/view.h"
@@ -66,6 +67,19 @@ TEST(MousePen, IsATabletAsLargeAsTheSheet) {
   EXPECT_EQ(pen.sample({}).tool, PenTool::none);
 }
 
+TEST(StudioKeys, CareForTheBrushWithTheChosenColour) {
+  const CareChoice choice{.pigment = 1, .strength = 2, .glue = 0.1F, .wetness = 0.5F, .depth_mm = 6};
+  const Concentrations colour{0, 2, 0, 0.1F};
+  EXPECT_EQ(care_for(StudioKey::load, choice), BrushCare(LoadBrush{0.5F, colour}));
+  EXPECT_EQ(care_for(StudioKey::dip, choice), BrushCare(DipBrush{6, 0.5F, colour}));
+  const auto ramps = std::get<GradeBrush>(care_for(StudioKey::gradient, choice).value());
+  EXPECT_EQ(ramps.side.back().strength, colour);
+  EXPECT_LT(ramps.side.front().strength[1], 0.5F);
+  for (const StudioKey key : {StudioKey::rinse, StudioKey::wipe, StudioKey::blot, StudioKey::roll})
+    EXPECT_TRUE(care_for(key, choice));
+  EXPECT_FALSE(care_for(StudioKey::undo, choice));
+}
+
 struct Image {
   int width = 0;
   int height = 0;
@@ -111,14 +125,21 @@ TEST(StudioWindow, PaintsUndoesAndRecordsWhatAReplayPaintsAgain) {
     }
     script << t + 0.6 << " save " << (folder / "both.png").string() << "\n"
            << t + 0.6 << " shot " << (folder / "window.png").string() << "\n"
-           << t + 0.7 << " key undo\n"
+           << t + 0.65 << " key rinse\n"
+           << t + 0.66 << " key wipe\n"
+           << t + 0.67 << " key dip\n"
+           << t + 0.70 << " key undo\n"
+           << t + 0.72 << " key undo\n"
+           << t + 0.74 << " key undo\n"
+           << t + 0.76 << " key undo\n"
            << t + 2.2 << " save " << (folder / "undone.png").string() << "\n"
            << t + 2.3 << " quit\n";
   }
   const std::string fude = FUDE_PROGRAM;
   const std::string in = "cd " + folder.string() + " && ";
   ASSERT_EQ(run(in + "xvfb-run -a -s '-screen 0 1280x960x24' " + fude +
-                " paint --script script --size-mm 80x60 --paper branching --backend cpu --out live.fude --picture end.png"),
+                " paint --script script --size-mm 80x60 --paper branching --backend cpu --out live.fude "
+                "--picture end.png"),
             0);
   const Image both = read(folder / "both.png");
   ASSERT_EQ(both.width, 800);

@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "capture/action_words.h"
 #include "capture/database.h"
 #include "capture/session_schema.h"
 #include "capture/session_writer.h"
@@ -109,7 +110,8 @@ TEST_F(SessionFile, EverythingComesBack) {
   EXPECT_EQ(in.pens[0].applied, 3);
   ASSERT_EQ(in.actions.size(), 1U);
   EXPECT_GT(in.actions[0].order, in.pens[0].order);
-  EXPECT_EQ(std::get<LoadBrush>(in.actions[0].action.what), (LoadBrush{0.5F, {1, 0, 0.25F, 2}}));
+  EXPECT_EQ(std::get<LoadBrush>(std::get<BrushCare>(in.actions[0].action.what)),
+            (LoadBrush{0.5F, {1, 0, 0.25F, 2}}));
   EXPECT_EQ(in.settings.at("brush"), "round-goat");
   ASSERT_EQ(in.receipts.size(), 1U);
   EXPECT_EQ(in.receipts[0].dropped, 1);
@@ -120,6 +122,48 @@ TEST_F(SessionFile, EverythingComesBack) {
   ASSERT_EQ(in.passed_over.size(), 1U);
   EXPECT_EQ(in.passed_over[0].what, "report 12");
   EXPECT_EQ(in.passed_over[0].count, 3);
+}
+
+TEST(ActionWords, EveryActionComesBack) {
+  const Concentrations strength{0.5F, 0, 1.25F, 0.1F};
+  const std::vector<LoadStop> ramp{{0, 0.5F, {}}, {0.3F, 1, strength}, {0.3F, 1, {}}, {1, 0.25F, strength}};
+  const std::vector<BrushCare> cares{LoadBrush{0.7F, strength},
+                                     GradeBrush{ramp, {}},
+                                     GradeBrush{ramp, {{0.1F, 1, strength}}},
+                                     DipBrush{8.5F, 0.4F, strength},
+                                     RinseBrush{2},
+                                     WipeBrush{0.6F},
+                                     BlotBrush{0.5F, {}},
+                                     BlotBrush{0.5F, 0.25F},
+                                     RollBrush{1.5F}};
+  for (const BrushCare& care : cares) {
+    const Action action{Timestamp(Duration(7)), care};
+    const ActionWords words = words_for(action);
+    const auto back = action_from(action.time, words.verb, words.arguments);
+    ASSERT_TRUE(back) << words.verb;
+    EXPECT_EQ(*back, action) << words.arguments;
+  }
+}
+
+TEST(ActionWords, WhatIsOutOfRangeIsRefusedByName) {
+  for (const auto& [verb, arguments] : std::vector<std::pair<std::string, std::string>>{
+           {"load", "{}"},
+           {"load", R"({"wetness": 2, "strength": [0, 0, 0, 0]})"},
+           {"grade", R"({"side": [], "far_side": []})"},
+           {"grade", R"({"side": [{"along": 1, "wetness": 1, "strength": [1, 0, 0, 0]},
+                                 {"along": 0, "wetness": 1, "strength": [1, 0, 0, 0]}], "far_side": []})"},
+           {"dip", R"({"depth_mm": -1, "seconds": 1, "strength": [1, 0, 0, 0]})"},
+           {"dip", R"({"depth_mm": 1, "seconds": 1e9, "strength": [1, 0, 0, 0]})"},
+           {"dip", R"({"depth_mm": 1, "seconds": 1, "strength": [1, "a", 0, 0]})"},
+           {"rinse", R"({"seconds": "x"})"},
+           {"wipe", "[]"},
+           {"blot", R"({"seconds": 1, "side": 9})"},
+           {"roll", "not JSON"},
+           {"shake", "{}"}}) {
+    const auto action = action_from({}, verb, arguments);
+    ASSERT_FALSE(action) << arguments;
+    EXPECT_NE(action.error().message.find("'" + verb + "'"), std::string::npos);
+  }
 }
 
 TEST_F(SessionFile, NothingFlushedIsLostWhenTheProgramIsKilled) {
@@ -200,10 +244,11 @@ TEST_F(SessionFile, RangesOfFormat2ComeFromTheFirstEmitter) {
     for (const std::string& table : session_schema::tables(2)) ASSERT_TRUE(db.run(table));
     ASSERT_TRUE(db.run("PRAGMA application_id=" + std::to_string(session_schema::application_id)));
     ASSERT_TRUE(db.run("PRAGMA user_version=2"));
-    ASSERT_TRUE(db.run("INSERT INTO range_sample(input, device, time_ns, stamped_by, sequence, receivers, "
-                       "flight_0_s, amplitude_0, amplitude_1, amplitude_2, amplitude_3, amplitude_4, "
-                       "amplitude_5, amplitude_6, amplitude_7, after_gap) "
-                       "VALUES(1, 1, 5, 'arrival', 7, 2, 0.001, 0.5, 0, 0, 0, 0, 0, 0, 0, 0)"));
+    ASSERT_TRUE(
+        db.run("INSERT INTO range_sample(input, device, time_ns, stamped_by, sequence, receivers, "
+               "flight_0_s, amplitude_0, amplitude_1, amplitude_2, amplitude_3, amplitude_4, "
+               "amplitude_5, amplitude_6, amplitude_7, after_gap) "
+               "VALUES(1, 1, 5, 'arrival', 7, 2, 0.001, 0.5, 0, 0, 0, 0, 0, 0, 0, 0)"));
   }
   const auto in = read_session(path());
   ASSERT_TRUE(in.has_value()) << in.error().message;

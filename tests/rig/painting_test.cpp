@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -48,10 +50,13 @@ TEST(Painting, WhatTheBrushLostIsOnThePaper) {
   const auto left_in_brush = [&] {
     double water = 0;
     double pigment = 0;
-    for (const LoadedPatch& patch : painting.brush(PenEnd::tip).state().loading.patches) {
-      water += patch.water_ul;
-      pigment += patch.pigment_ul[0];
-    }
+    const Loading& loading = painting.brush(PenEnd::tip).state().loading;
+    const auto add = [&](const LoadedPatch& part) {
+      water += part.water_ul;
+      pigment += part.pigment_ul[0];
+    };
+    std::ranges::for_each(loading.patches, add);
+    std::ranges::for_each(loading.inside, add);
     return std::pair(water, pigment);
   };
   const auto [water, pigment] = left_in_brush();
@@ -75,6 +80,90 @@ TEST(Painting, WhatTheBrushLostIsOnThePaper) {
   EXPECT_GT(totals.pigment_deposited[0], 0.1);
 }
 
+// A pose of an upright handle with the root of the tuft `height_mm` over (x, y).
+BrushInput held_at(double t_s, double x_mm, double y_mm, double height_mm) {
+  BrushInput input;
+  input.time.host = Timestamp(Duration(static_cast<std::int64_t>(t_s * 1e9)));
+  input.origin = PoseOrigin::measured;
+  input.in_contact = true;
+  input.paper_from_handle.translation = {x_mm, y_mm, height_mm};
+  return input;
+}
+
+double pigment_in(const Brush& brush, std::size_t channel) {
+  const Loading& loading = brush.state().loading;
+  double sum = 0;
+  for (const LoadedPatch& patch : loading.patches) sum += patch.pigment_ul[channel];
+  for (const LoadedPatch& row : loading.inside) sum += row.pigment_ul[channel];
+  return sum;
+}
+
+double pigment_on(const Ink& ink, const CellRect& cells, std::size_t channel) {
+  double sum = 0;
+  for (const Concentrations& amount : ink.read(cells).pigment) sum += static_cast<double>(amount[channel]);
+  return sum * ink.cell_mm() * ink.cell_mm();
+}
+
+TEST(Painting, ACleanWetBrushPicksUpWetInkAndLeavesItFurtherOn) {
+  PaintingSetup setup = settings().painting;
+  setup.ink.width_mm = 80;
+  setup.ink.height_mm = 30;
+  setup.load = {0.9F, {1.2F, 0, 0, 0.1F}};
+  Painting painting = Painting::open(setup).value();
+  const double length = setup.brush.tuft_length_mm;
+  double t = 0;
+  // From x to x in steps of 5 ms at 40 mm/s, pressed a quarter of the tuft.
+  const auto stroke = [&](double from_mm, double to_mm) {
+    for (double x = from_mm; x <= to_mm; x += 0.2, t += 0.005) {
+      painting.advance_to(static_cast<Step>(t / painting.step_s()));
+      painting.move(PenEnd::tip, held_at(t, x, 15, 0.75 * length));
+    }
+    t += 0.005;
+    painting.move(PenEnd::tip, held_at(t, to_mm, 15, 2 * length));
+    t += 0.05;
+    painting.advance_to(static_cast<Step>(t / painting.step_s()));
+  };
+  for (int pass = 0; pass < 4; ++pass) stroke(15, 25);  // more than the paper drinks
+  const CellRect beyond{200, 0, 200, 150};              // x from 40 to 80 mm
+  EXPECT_EQ(pigment_on(painting.ink(), beyond, 0), 0);
+
+  painting.act({{}, BrushCare(LoadBrush{0.9F, {}})});  // clear water
+  EXPECT_EQ(pigment_in(painting.brush(PenEnd::tip), 0), 0);
+  const double on_paper = painting.ink().totals().pigment_deposited[0];
+  stroke(15, 30);
+  painting.act({{}, ReshapeBrush{}});  // it hears the last answers
+  const double picked = pigment_in(painting.brush(PenEnd::tip), 0);
+  EXPECT_NEAR(on_paper - painting.ink().totals().pigment_deposited[0], picked, 1e-4 * on_paper);
+  stroke(50, 65);
+  painting.act({{}, ReshapeBrush{}});
+  const double left = pigment_on(painting.ink(), beyond, 0);
+  std::printf("figure: of %.3f ul of wet ink a clean wet brush picks up %.3f and leaves %.3f further on\n",
+              on_paper, picked, left);
+  EXPECT_GT(picked, 0.005 * on_paper);
+  EXPECT_GT(left, 0.05 * picked);
+  EXPECT_NEAR(left + pigment_in(painting.brush(PenEnd::tip), 0), picked, 1e-3 * picked);
+}
+
+TEST(Painting, UndoTakesBackADip) {
+  PaintingSetup setup = settings().painting;
+  setup.ink.width_mm = setup.ink.height_mm = gesture::sheet_mm;
+  for (const std::size_t kept : {0, 4}) {
+    History history(Painting::open(setup).value(), kept);
+    const auto bytes = [&] { return bytes_of(history.painting().brush(PenEnd::tip).state()); };
+    const auto loaded = bytes();
+    history.apply(Action{{}, BrushCare(RinseBrush{1})});
+    history.apply(Action{{}, BrushCare(DipBrush{8, 0.5F, {1, 0, 0, 0}})});
+    const auto dipped = bytes();
+    EXPECT_NE(dipped, loaded);
+    history.apply(Action{{}, Undo{}});
+    history.apply(Action{{}, Undo{}});
+    EXPECT_EQ(bytes(), loaded);
+    history.apply(Action{{}, Redo{}});
+    history.apply(Action{{}, Redo{}});
+    EXPECT_EQ(bytes(), dipped);
+  }
+}
+
 TEST(Replay, ThreadsDoNotChangeThePicture) {
   const Session session = gesture::session(150, 2);
   EXPECT_EQ(painted(session, settings(1)).picture_sha256, painted(session, settings(2)).picture_sha256);
@@ -86,9 +175,9 @@ TEST(Replay, IsTheSamePictureInEveryBuild) {
   ReplaySettings s = settings();
   s.settle.seconds = 1;
   EXPECT_EQ(painted(gesture::session(150, 2), s).picture_sha256,
-            "53773d46097b4e2048fbd036624357d1f2449cf3450417b4efd2e5e4cc6ce476");
+            "49e2517482bff5c8c70dc4561e75ac8e5b443ab7b8bf78823ca0ab7330ee2e2e");
   EXPECT_EQ(painted(gesture::calibrated(gesture::session(150, 2)), s).picture_sha256,
-            "41decfeaaa751403a1ca1f3b133f4fdc7dd000d5bdc409812f95d216dcd6d439");
+            "4bcf254aad7312fccc447ffd60fc7730cec6f9dce63a66012cbd61272c854d51");
 }
 
 TEST(Replay, TheRateOfTheTabletDoesNotChangeTheDeposit) {
@@ -217,7 +306,7 @@ std::string painted_live_and_again(const Session& script, const std::string& nam
     LivePainting live(Painting::open(setup).value(), s.reach, recorder.get());
     for (const RecordedPen& pen : script.pens) {
       live.pen({1, pen.sample, plan.mappings.at(1)});
-      if (pen.order == 90) live.act({pen.sample.time.host, LoadBrush{0.6F, {0.5F, 0, 0, 0}}});
+      if (pen.order == 90) live.act({pen.sample.time.host, BrushCare(LoadBrush{0.6F, {0.5F, 0, 0, 0}})});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     live.act({{}, Undo{}});

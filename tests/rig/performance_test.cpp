@@ -88,6 +88,46 @@ TEST(Performance, BadScriptsAreNamedByLine) {
       read_performance(std::string(head) + "[[stroke]]\nknots=[[1,2,0.5],[nan,2,0.5,1]]\n", "x").has_value());
 }
 
+TEST(Performance, LoadsRampsAndDipsInTheColoursOfItsPalette) {
+  const auto p = read_performance(R"(
+name = "a"
+palette = "plum"
+width_mm = 10
+height_mm = 10
+[[stroke]]
+load = {stops = [{at = 0}, {at = 1, wetness = 0.5, hansa-yellow = 0.7, glue = 0}], far_stops = [{at = 0, ink = 0}]}
+prepare = [{rinse = 2}, {wipe = 0.7}, {dip = {quinacridone-rose = 1.5}, depth_mm = 8}, {roll = 2}, {blot = 0.5, side = 0.25}, {reshape = true}]
+knots = [[1, 2, 0.5], [3, 2, 0.5, 1]]
+)",
+                                  "x.toml");
+  ASSERT_TRUE(p) << p.error().message;
+  ASSERT_EQ(p->palette->pigments.size(), 3U);
+  EXPECT_EQ(p->palette->pigments[1].name, "quinacridone-rose");
+  const std::vector<decltype(Action::what)> expected{
+      BrushCare(RinseBrush{2}),
+      BrushCare(WipeBrush{0.7F}),
+      BrushCare(DipBrush{8, 0.5F, {0, 1.5F, 0, 0.1F}}),
+      BrushCare(RollBrush{2}),
+      BrushCare(BlotBrush{0.5F, 0.25F}),
+      ReshapeBrush{},
+      BrushCare(
+          GradeBrush{{{0, 1, {1, 0, 0, 0.1F}}, {1, 0.5F, {0, 0, 0.7F, 0}}}, {{0, 1, {0, 0, 0, 0.1F}}}})};
+  EXPECT_EQ(p->strokes[0].prepare, expected);
+  EXPECT_EQ(perform(*p).actions.size(), expected.size());
+}
+
+TEST(Performance, AColourThatIsNotOnThePaletteIsRefused) {
+  const std::string head = "name='a'\nwidth_mm=10\nheight_mm=10\n";
+  const std::string knots = "knots=[[1,2,0.5],[3,2,0.5,1]]\n";
+  for (const char* wrong :
+       {"load={hansa-yellow=1}", "load={stops=[]}", "load={stops=[{at=1},{at=0}]}",
+        "prepare=[{dip={rose=1}, depth_mm=3}]", "prepare=[{dance=1}]", "prepare=3", "load={wetness=2}"})
+    EXPECT_FALSE(read_performance(head + "[[stroke]]\n" + wrong + "\n" + knots, "x.toml")) << wrong;
+  const auto nowhere = read_performance(head + "palette='none such'\n[[stroke]]\n" + knots, "x.toml");
+  ASSERT_FALSE(nowhere);
+  EXPECT_NE(nowhere.error().message.find("plum"), std::string::npos);
+}
+
 TEST(Performance, WhatIsDecodedIsWhatWasWritten) {
   const Performance script = yong();
   const Session session = session_of(script);
