@@ -21,6 +21,8 @@ paint "$work/turns.fude" turns.png --flow off
 for brush in "$here"/brushes/*.toml; do
   paint "$work/turns.fude" "turns-$(basename "$brush" .toml).png" --flow off --brush "$brush"
 done
+"$fude" perform brushwork --out "$work/brushwork.fude"
+paint "$work/brushwork.fude" brushwork.png --flow off --cell-mm 0.13
 "$fude" perform blots --out "$work/blots.fude"
 for paper in xuan feathery light-fringe branching rough-edge dark-edge; do
   paint "$work/blots.fude" "blots-$paper.png" --paper "$paper" --settle 20
