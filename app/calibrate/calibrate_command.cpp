@@ -9,13 +9,13 @@ namespace {
 
 using AddCommand = void (*)(CLI::App& calibrate, int& status);
 constexpr AddCommand commands[] = {
-    add_calibrate_pivot,         add_calibrate_surface,     add_calibrate_tracker,
-    add_calibrate_common_motion, add_calibrate_distortion,  add_calibrate_imu,
-    add_calibrate_imu_axes,      add_calibrate_delay,       add_calibrate_pressure,
+    add_calibrate_pivot,      add_calibrate_surface,     add_calibrate_tracker,  add_calibrate_common_motion,
+    add_calibrate_distortion, add_calibrate_imu,         add_calibrate_imu_axes, add_calibrate_delay,
+    add_calibrate_pressure,
 #ifdef FUDE_VISION
-    add_calibrate_camera,        add_calibrate_camera_pose, add_calibrate_target,
+    add_calibrate_camera,     add_calibrate_camera_pose, add_calibrate_target,
 #endif
-    add_calibrate_check,         add_calibrate_list,        add_calibrate_rollback,
+    add_calibrate_brush,      add_calibrate_check,       add_calibrate_list,     add_calibrate_rollback,
 };
 
 }  // namespace

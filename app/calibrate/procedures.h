@@ -8,6 +8,7 @@ class App;
 
 namespace fude {
 
+void add_calibrate_brush(CLI::App& calibrate, int& status);
 void add_calibrate_camera(CLI::App& calibrate, int& status);
 void add_calibrate_camera_pose(CLI::App& calibrate, int& status);
 void add_calibrate_check(CLI::App& calibrate, int& status);
