@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rig/brush_view/brush_picture.h"
 #include "rig/precedence.h"
 
 namespace fude {
@@ -96,6 +97,9 @@ void LivePainting::publish() {
   LiveStatus status;
   status.step = history_.step();
   status.tuft = painting.brush(PenEnd::tip).shape();
+  status.hair = seen_tufts(painting.brush(PenEnd::tip));
+  status.insides = insides_of(painting.brush(PenEnd::tip));
+  status.unconverged = painting.solves().unconverged;
   status.can_undo = history_.can_undo();
   status.can_redo = history_.can_redo();
   {

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "rig/brush_view/tuft_insides.h"
+#include "rig/brush_view/tuft_look.h"
 #include "rig/history.h"
 #include "rig/inputs.h"
 #include "rig/pen_manner.h"
@@ -35,6 +37,9 @@ struct LiveStatus {
   PenSample pen;
   Eigen::Vector2d nib_mm = Eigen::Vector2d::Zero();
   TuftShape tuft;
+  std::vector<SeenTuft> hair;
+  TuftInsides insides;
+  std::int64_t unconverged = 0;  // solves so far
   bool can_undo = false;
   bool can_redo = false;
 };

@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -38,8 +39,8 @@ void draw_colours(const std::vector<Pigment>& pigments, CareChoice& care) {
 
 }  // namespace
 
-PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms,
-                       const std::vector<Pigment>& pigments, CareChoice& care) {
+PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, BrushDisplay& display,
+                       double wet_step_budget_ms, const std::vector<Pigment>& pigments, CareChoice& care) {
   PanelChoice choice;
   ImGui::SetNextWindowPos(ImVec2(12, 12), ImGuiCond_FirstUseEver);
   ImGui::Begin("fude", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
@@ -56,6 +57,11 @@ PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen
     if (ImGui::SliderFloat("mouse pressure", &pressure, 0.05F, 1))
       mouse_pen.pressure = static_cast<double>(pressure);
   }
+  constexpr std::array<const char*, 4> looks = {"shaded", "colours", "outline", "off"};  // as TuftLook
+  int look = static_cast<int>(display.look);
+  if (ImGui::Combo("brush", &look, looks.data(), static_cast<int>(looks.size())))
+    display.look = static_cast<TuftLook>(look);
+  ImGui::Checkbox("development view", &display.development);
   const auto button = [&](const char* label, StudioKey key, bool enabled) {
     ImGui::BeginDisabled(!enabled);
     if (ImGui::Button(label)) choice.key = key;

@@ -7,6 +7,7 @@
 #include "app/studio/care_choice.h"
 #include "app/studio/mouse_pen.h"
 #include "app/studio/script.h"
+#include "app/studio/tuft_drawing.h"
 #include "rig/live_painting.h"
 #include "sim/optics/pigment.h"
 
@@ -17,9 +18,9 @@ struct PanelChoice {
   bool save = false;
 };
 
-// Draws it and says what was chosen; changes the mouse pen's pressure and what the brush is loaded with, of
-// these pigments. `mouse`: the pen shown is the mouse.
-PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, double wet_step_budget_ms,
-                       const std::vector<Pigment>& pigments, CareChoice& care);
+// Draws it and says what was chosen; changes the mouse pen's pressure, how the brush is displayed, and what
+// it is loaded with, of these pigments. `mouse`: the pen shown is the mouse.
+PanelChoice draw_panel(const LiveStatus& status, bool mouse, MousePen& mouse_pen, BrushDisplay& display,
+                       double wet_step_budget_ms, const std::vector<Pigment>& pigments, CareChoice& care);
 
 }  // namespace fude

@@ -31,6 +31,15 @@ std::optional<StudioEvent> event_of(const std::string& verb, std::istringstream&
     if (const auto p = number(words); p && *p >= 0 && *p <= 1) return Press{*p};
   } else if (verb == "zoom") {
     if (const auto factor = number(words); factor && *factor > 0) return Zoom{*factor};
+  } else if (verb == "look") {
+    static const std::map<std::string, Look> looks = {{"shaded", {TuftLook::shaded, false}},
+                                                      {"colours", {TuftLook::colours, false}},
+                                                      {"outline", {TuftLook::outline, false}},
+                                                      {"off", {TuftLook::off, false}},
+                                                      {"development", {TuftLook::outline, true}}};
+    std::string name;
+    words >> name;
+    if (const auto look = looks.find(name); look != looks.end()) return look->second;
   } else if (verb == "key") {
     std::string name;
     words >> name;

@@ -6,13 +6,14 @@
 //   SECONDS press           SECONDS zoom FACTOR    (about the middle of the window)
 //   SECONDS release         SECONDS save FILE      (the sheet as it stands, a PNG)
 //   SECONDS pressure P      SECONDS shot FILE      (the window as it is seen, a PNG)
-//                           SECONDS quit
+//   SECONDS look NAME       SECONDS quit           (shaded colours outline off development)
 #pragma once
 
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "rig/brush_view/tuft_look.h"
 #include "signal/result.h"
 
 namespace fude {
@@ -38,9 +39,13 @@ struct SaveAs {
 struct Shot {
   std::string file;
 };
+struct Look {
+  TuftLook hair = TuftLook::shaded;
+  bool development = false;
+};
 struct Quit {};
 
-using StudioEvent = std::variant<MoveTo, Button, Press, Zoom, StudioKey, SaveAs, Shot, Quit>;
+using StudioEvent = std::variant<MoveTo, Button, Press, Zoom, StudioKey, SaveAs, Shot, Look, Quit>;
 
 struct ScriptedEvent {
   double at_s;

@@ -84,6 +84,7 @@ class Studio {
     if (!window) return tl::unexpected(window.error());
     window_ = std::move(*window);
     image_.emplace(columns_, rows_, setup_.settings.palette);
+    tuft_.emplace(setup_.settings.palette);
     view_.window = window_->size();
     view_.fit(sheet_mm_);
     start_ = looked_ = now();
@@ -100,6 +101,7 @@ class Studio {
       if (failed_) break;
     }
     image_.reset();
+    tuft_.reset();
     window_.reset();
     if (failed_) return tl::unexpected(*failed_);
     return {};
@@ -215,6 +217,7 @@ class Studio {
     saved_ = save.file;
   }
   void on(const Shot& shot) { shots_.push_back(shot.file); }
+  void on(const Look& look) { display_ = {look.hair, look.development}; }
   void on(const Quit&) { quitting_ = true; }
   void on(StudioKey key) {
     if (const auto care = care_for(key, care_)) return live_.act({now(), *care});
@@ -295,6 +298,16 @@ class Studio {
         failed_ = done.error();
   }
 
+  void draw_brush(ImDrawList& canvas, const LiveStatus& status) {
+    tuft_->draw(canvas, view_, status.hair, display_.development ? TuftLook::outline : display_.look);
+    // What did not converge is seen for a while, though the next frame may be good again.
+    constexpr Duration seen_for = std::chrono::milliseconds(300);
+    if (status.unconverged > unconverged_) unconverged_at_ = now();
+    unconverged_ = status.unconverged;
+    const bool converged = !unconverged_at_ || now() - *unconverged_at_ > seen_for;
+    if (display_.development) draw_insides(canvas, view_, status.tuft, status.insides, converged);
+  }
+
   void draw() {
     const LiveStatus status = live_.status();
     ImDrawList& canvas = *ImGui::GetBackgroundDrawList();
@@ -309,9 +322,9 @@ class Studio {
     canvas.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(image_->texture())),
                     point(top_left), point(bottom_right));
     if (pen_near_ && !ImGui::GetIO().WantCaptureMouse) ImGui::SetMouseCursor(ImGuiMouseCursor_None);
-    if (status.pen.in_proximity) draw_tuft(canvas, view_, status.tuft);
+    if (status.pen.in_proximity) draw_brush(canvas, status);
     const PanelChoice choice =
-        draw_panel(status, mouse_shown_, mouse_, step_ms_, setup_.settings.palette.pigments, care_);
+        draw_panel(status, mouse_shown_, mouse_, display_, step_ms_, setup_.settings.palette.pigments, care_);
     if (choice.key) handle(*choice.key);
     if (choice.save) handle(SaveAs{free_picture_name()});
     const std::lock_guard lock(tablets_mutex_);
@@ -340,6 +353,10 @@ class Studio {
   std::unique_ptr<Devices> tablets_;
   std::unique_ptr<Window> window_;
   std::optional<SheetImage> image_;
+  std::optional<TuftDrawing> tuft_;
+  BrushDisplay display_;
+  std::int64_t unconverged_ = 0;
+  std::optional<Timestamp> unconverged_at_;
   View view_;
   Timestamp start_{};
   std::optional<Timestamp> hand_time_;  // of a scripted event; none: the present

@@ -31,8 +31,8 @@ TEST(StudioScript, ReadsEventsInOrder) {
 TEST(StudioScript, NamesTheLineThatIsWrong) {
   for (const char* wrong :
        {"0.1 press\nsoon press\n", "0.1 press\n0.2 dance\n", "0.1 press\n0.2 move 3\n",
-        "0.1 press\n0.05 release\n", "0.1 press\n0.2 pressure 2\n", "0.1 press\n0.2 key jump\n",
-        "0.1 press\n0.2 press hard\n", "0.1 press\nnan release\n"}) {
+        "0.1 press\n0.05 release\n", "0.1 press\n0.2 look pretty\n", "0.1 press\n0.2 pressure 2\n",
+        "0.1 press\n0.2 key jump\n", "0.1 press\n0.2 press hard\n", "0.1 press\nnan release\n"}) {
     const auto events = read_script(wrong, "s.txt");
     ASSERT_FALSE(events) << wrong;
     EXPECT_NE(events.error().message.find("s.txt, line 2"), std::string::npos) << events.error().message;
@@ -174,6 +174,64 @@ TEST(StudioWindow, PaintsUndoesAndRecordsWhatAReplayPaintsAgain) {
   EXPECT_EQ(run(in + "cmp end.png replay.png"), 0);
   ASSERT_EQ(run(in + fude + " replay live.fude --paper xuan --out other.png"), 0);
   EXPECT_NE(run(in + "cmp -s end.png other.png"), 0);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(StudioWindow, TheBrushIsSeenAsAskedAndTheStrokeThroughIt) {
+  std::string pattern = testing::TempDir() + "fude_look_XXXXXX";
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const std::filesystem::path folder = pattern;
+  // A bar, and the brush held over it.
+  {
+    std::ofstream script(folder / "script");
+    double t = 0.3;
+    script << t << " move 15 32\n" << t + 0.02 << " press\n";
+    t += 0.03;
+    for (int i = 0; i <= 60; ++i, t += 0.01) script << t << " move " << 15 + 0.6 * i << " 32\n";
+    script << t << " release\n" << t + 0.05 << " move 70 50\n" << t + 0.1 << " move 35 30\n";
+    t += 0.8;
+    for (const char* look : {"off", "shaded", "colours", "outline", "development"}) {
+      script << t << " look " << look << "\n"
+             << t + 0.3 << " shot " << (folder / (std::string(look) + ".png")).string() << "\n";
+      t += 0.4;
+    }
+    script << t << " quit\n";
+  }
+  ASSERT_EQ(run("cd " + folder.string() + " && xvfb-run -a -s '-screen 0 1280x960x24' " + FUDE_PROGRAM +
+                " paint --script script --size-mm 80x60 --backend cpu --flow off"),
+            0);
+  const Image off = read(folder / "off.png");
+  ASSERT_GT(off.width, 600);
+  const auto changed = [&](const char* look, auto take) {
+    const Image seen = read(folder / (std::string(look) + ".png"));
+    ASSERT_EQ(seen.width, off.width);
+    // Right of the panel.
+    for (int y = 0; y < off.height; ++y)
+      for (int x = 300; x < off.width; ++x)
+        if (std::abs(seen.at(x, y) - off.at(x, y)) > 4) take(off.at(x, y), seen.at(x, y));
+  };
+  double through = 0;
+  double beside = 0;
+  int over_ink = 0;
+  int over_paper = 0;
+  changed("shaded", [&](int bare, int seen) {
+    if (bare < 60) through += seen, ++over_ink;
+    if (bare > 200 && seen < 190) beside += seen, ++over_paper;
+  });
+  ASSERT_GT(over_ink, 300);
+  ASSERT_GT(over_paper, 1000);
+  EXPECT_LT(through / over_ink, beside / over_paper - 10);
+  int rim = 0;
+  int hair = 0;
+  changed("outline", [&](int bare, int seen) { rim += bare - seen > 100; });
+  changed("colours", [&](int bare, int seen) { hair += bare - seen > 100; });
+  EXPECT_GT(rim, 100);
+  EXPECT_GT(hair, 5 * rim);
+  int skeleton = 0;
+  changed("development", [&](int, int) { ++skeleton; });
+  int outline = 0;
+  changed("outline", [&](int, int) { ++outline; });
+  EXPECT_GT(skeleton, outline + 200);
   std::filesystem::remove_all(folder);
 }
 
