@@ -171,6 +171,7 @@ Result<ReplaySettings> PaintingOptions::settings(const RecordedSettings& recorde
   setup.instruction_set = instruction_set_named(isa);
   setup.backend = backend == "auto" ? best_ink_backend() : backend == "gl" ? InkBackend::gl : InkBackend::cpu;
   settings.palette.pigments = box->pigments;
+  settings.painting.spots = box->spots;
   settings.to_record = {{"brush", brush_text->text},
                         {"paper", paper_text->text},
                         {"palette", box_text->text},

@@ -17,6 +17,15 @@ Duration session_time(Step step, double step_s) {
   return Duration(static_cast<std::int64_t>(std::llround(static_cast<double>(step) * step_s * 1e9)));
 }
 
+// Where the handle's axis meets the plane of the paper.
+const PlacedSpot* spot_under(const std::vector<PlacedSpot>& spots, const BrushInput& input) {
+  const Eigen::Vector3d axis = input.paper_from_handle.rotation * Eigen::Vector3d::UnitZ();
+  if (spots.empty() || input.origin == PoseOrigin::none || !(axis.z() > 0.05)) return nullptr;
+  const Eigen::Vector3d& root = input.paper_from_handle.translation;
+  const Eigen::Vector3d nib = root - root.z() / axis.z() * axis;
+  return spot_at(spots, nib.x(), nib.y());
+}
+
 }  // namespace
 
 Result<Painting> Painting::open(const PaintingSetup& setup) {
@@ -28,6 +37,7 @@ Result<Painting> Painting::open(const PaintingSetup& setup) {
 Painting::Painting(const PaintingSetup& setup, std::unique_ptr<Ink> ink)
     : memory_(std::make_unique<SnapshotMemory>()), ink_(std::make_unique<InkThread>(std::move(ink))) {
   const auto grain = std::make_shared<SheetGrain>(setup.ink.paper, setup.ink.seed);
+  spots_ = setup.spots;
   brushes_.assign(pen_ends, Brush(setup.brush, setup.seed));
   LoadBrush load = setup.load;
   for (Brush& brush : brushes_) {
@@ -77,6 +87,10 @@ std::uint64_t Painting::pour(InkEvent event) {
 
 bool Painting::move(PenEnd end, const BrushInput& input) {
   give_back_what_is_due();
+  if (const PlacedSpot* spot = spot_under(spots_, input)) {
+    brushes_[static_cast<std::size_t>(end)].visit(input, spot->spot);
+    return false;
+  }
   const auto start = std::chrono::steady_clock::now();
   BrushFrame frame = brushes_[static_cast<std::size_t>(end)].move(input);
   solves_.last_us =

@@ -12,6 +12,7 @@
 
 #include "capture/session.h"
 #include "rig/ink_thread.h"
+#include "rig/paint_box.h"
 #include "rig/snapshot_memory.h"
 #include "signal/action.h"
 #include "signal/brush_input.h"
@@ -28,6 +29,7 @@ struct PaintingSetup {
   LoadBrush load{0.8F, {1.2F, 0, 0, 0.4F}};
   bool endless = false;  // --ink endless: the brush stays full
   std::uint64_t seed = 1;
+  std::vector<PlacedSpot> spots;  // of the palette beside the paper
 };
 
 // The two ends of a pen are two brushes: the tip carries ink, the rubber end clear water.
@@ -77,7 +79,8 @@ class Painting {
   // Milliseconds of the wall that each step took, of those done since the last call.
   std::vector<double> step_ms() { return ink_->step_ms(); }
 
-  // One sample of the brush, at the present step. Says whether hair touches the paper.
+  // One sample of the brush, at the present step. Says whether hair touches the paper. Over a spot of the
+  // palette (where the handle's axis meets the plane of the paper) the brush goes there instead.
   bool move(PenEnd end, const BrushInput& input);
 
   // Ink from anywhere: the event gets its number and time. Nobody is told what the paper refused.
@@ -104,6 +107,7 @@ class Painting {
   std::unique_ptr<SnapshotMemory> memory_;
   std::unique_ptr<InkThread> ink_;
   std::vector<Brush> brushes_;
+  std::vector<PlacedSpot> spots_;
   std::deque<PaintingState::Due> due_;
   std::map<std::uint64_t, PaintingState::Asked> unanswered_;
   std::uint64_t next_event_ = 1;

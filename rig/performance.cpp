@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "rig/import_session.h"
 #include "rig/performed_path.h"
@@ -137,6 +138,11 @@ Result<void> write_performance(const Performance& performance, const std::filesy
   const Performed performed = perform(performance);
   std::map<std::string, std::string> settings;
   if (performance.palette) settings["palette"] = performance.palette->toml;
+  if (performance.sheet) {
+    std::ostringstream sides;
+    sides << performance.sheet->width.value << 'x' << performance.sheet->height.value;
+    settings["sheet_mm"] = sides.str();
+  }
   return write_recordings({&performed.recording, 1}, performed.actions, "performance", session, overwrite,
                           settings)
       .map([](const std::vector<ImportedStream>&) {});

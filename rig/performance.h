@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/pen_mapping.h"
 #include "capture/import/recording.h"
 #include "rig/paint_box.h"
 #include "signal/action.h"
@@ -40,6 +41,7 @@ struct Performance {
   Millimetres width;
   Millimetres height;
   std::optional<PaintBox> palette;  // none: ink alone
+  std::optional<Extent> sheet;      // in the middle of the tablet; none: as large as that
   std::vector<PerformedStroke> strokes;
 };
 

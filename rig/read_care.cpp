@@ -94,6 +94,10 @@ std::optional<decltype(Action::what)> care_from(const toml::table& row, const Pa
 
 }  // namespace
 
+std::optional<Concentrations> ink_from(const toml::table& table, const PaintBox& box) {
+  return knows_all(table, box, {}) ? strength_from(table, box) : std::nullopt;
+}
+
 std::optional<BrushCare> load_from(const toml::table& table, const PaintBox& box) {
   if (table.contains("stops")) {
     auto side = ramp_from(table["stops"].as_array(), box);

@@ -11,6 +11,9 @@
 
 namespace fude {
 
+// The strengths of `{ink, glue, PIGMENT…}`. None: malformed.
+std::optional<Concentrations> ink_from(const toml::table& table, const PaintBox& box);
+
 // Of `{wetness, ink, glue, PIGMENT…}`, or of `{stops = [{at, …}…], far_stops = […]}`. None: malformed.
 std::optional<BrushCare> load_from(const toml::table& table, const PaintBox& box);
 

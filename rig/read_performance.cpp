@@ -79,7 +79,15 @@ Result<Performance> read_performance(std::string_view text, const std::string& s
     return failure(
         Fault::malformed,
         source + ": a performance has a name, rate_hz (10 to 2000), width_mm and height_mm (1 to 2000)");
-  PaintBox box{.name = "ink", .pigments = {pigments()[0]}, .toml = {}};
+  if (table.contains("sheet_mm")) {
+    const auto width = table["sheet_mm"][0].value<double>();
+    const auto height = table["sheet_mm"][1].value<double>();
+    if (!width || !height || !(*width >= 1 && *width <= performance.width.value) ||
+        !(*height >= 1 && *height <= performance.height.value))
+      return failure(Fault::malformed, source + ": sheet_mm = [width, height] is no larger than the tablet");
+    performance.sheet = Extent{Millimetres(*width), Millimetres(*height)};
+  }
+  PaintBox box{.name = "ink", .pigments = {pigments()[0]}, .spots = {}, .toml = {}};
   if (const auto name = table["palette"].value<std::string>()) {
     auto palette = find_paint_box(*name);
     if (!palette) return tl::unexpected(palette.error());

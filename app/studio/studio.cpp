@@ -244,7 +244,8 @@ class Studio {
 
   void move_to(const Eigen::Vector2d& mm) {
     mouse_.at_mm = mm;
-    mouse_.over_paper = mm.x() >= 0 && mm.y() >= 0 && mm.x() <= sheet_mm_.x() && mm.y() <= sheet_mm_.y();
+    mouse_.over_paper = (mm.x() >= 0 && mm.y() >= 0 && mm.x() <= sheet_mm_.x() && mm.y() <= sheet_mm_.y()) ||
+                        spot_at(setup_.settings.painting.spots, mm.x(), mm.y()) != nullptr;
     send_mouse();
   }
 
@@ -321,6 +322,13 @@ class Studio {
                          IM_COL32(0, 0, 0, 70));
     canvas.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(image_->texture())),
                     point(top_left), point(bottom_right));
+    for (const PlacedSpot& spot : setup_.settings.painting.spots) {
+      const ImVec2 centre = point(view_.to_window({spot.x_mm, spot.y_mm}));
+      canvas.AddCircle(centre, static_cast<float>(spot.radius_mm * view_.pixels_per_mm),
+                       IM_COL32(230, 225, 215, 255), 0, 2);
+      if (!std::holds_alternative<Rim>(spot.spot))
+        canvas.AddText(centre, IM_COL32(230, 225, 215, 255), spot.name.c_str());
+    }
     if (pen_near_ && !ImGui::GetIO().WantCaptureMouse) ImGui::SetMouseCursor(ImGuiMouseCursor_None);
     if (status.pen.in_proximity) draw_brush(canvas, status);
     const PanelChoice choice =

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/brush/dipping.h"
-
 namespace fude {
 namespace {
 
@@ -74,12 +72,37 @@ TuftSurface Brush::marked_surface() const {
 
 void Brush::take_footprint() { state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading)}; }
 
-BrushFrame Brush::move(const BrushInput& input) {
-  BrushFrame frame;
+// The seconds since the last input.
+double Brush::pass_time(const BrushInput& input) {
   const bool first = !state_.timed;
   const double elapsed_s = first ? 0 : seconds_since(state_.last, input.time.host);
   state_.last = first ? input.time.host : std::max(state_.last, input.time.host);
   state_.timed = true;
+  return elapsed_s;
+}
+
+void Brush::visit(const BrushInput& input, const PaletteSpot& spot) {
+  const double elapsed_s = pass_time(input);
+  if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) return away(elapsed_s);
+  // It hangs free: as in the air, turned as the hand turns it.
+  Pose<Paper, Handle> raised = input.paper_from_handle;
+  raised.rotation.normalize();
+  raised.translation.z() = out_of_reach_mm;
+  advance(tuft_, state_.tuft, raised, elapsed_s, true);
+  state_.footprint = {};
+  sweep_.come_from_nowhere();
+  const TuftSurface hair = surface_of(tuft_, state_.tuft.x, raised);
+  const double lowest = std::ranges::min(hair, {}, [](const Station& s) { return s.centre.z(); }).centre.z();
+  double level = out_of_reach_mm - input.paper_from_handle.translation.z();
+  if (const auto* bath = std::get_if<Bath>(&spot)) level = std::min(level, lowest + bath->depth_mm);
+  const bool stays = !input.after_gap && elapsed_s <= gap_s;
+  stay_at(state_.loading, tuft_, flow_, spot, immersed_below(hair, level), stays ? elapsed_s : 0);
+  if (std::holds_alternative<Rim>(spot) && level > lowest) reshape();
+}
+
+BrushFrame Brush::move(const BrushInput& input) {
+  BrushFrame frame;
+  const double elapsed_s = pass_time(input);
   if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) {
     away(elapsed_s);
     return frame;

@@ -18,6 +18,7 @@
 #include "signal/paper_grain.h"
 #include "signal/result.h"
 #include "sim/brush/brush_spec.h"
+#include "sim/brush/dipping.h"
 #include "sim/brush/footprint.h"
 #include "sim/brush/hair_texture.h"
 #include "sim/brush/loading.h"
@@ -82,6 +83,10 @@ class Brush {
   // The relief of the paper, which dry hair feels. None, as at first: it is flat.
   void paint_over(std::shared_ptr<PaperGrain> grain);
 
+  // Follows the handle over a spot of the palette, whose surface lies in the plane of the paper: what of the
+  // tuft is below it takes up, gives up or is wiped. Time counts as in move; after a gap none of it does.
+  void visit(const BrushInput& input, const PaletteSpot& spot);
+
   // Fills, dips, rinses, wipes, blots or rolls it; wiping straightens it too.
   void tend(const BrushCare& care);
   void load(float wetness, const Concentrations& strength) { tend(LoadBrush{wetness, strength}); }
@@ -97,6 +102,7 @@ class Brush {
   TuftShape shape() const;
 
  private:
+  double pass_time(const BrushInput& input);
   void away(double elapsed_s);
   TuftSurface marked_surface() const;
   void take_footprint();

@@ -88,6 +88,40 @@ void in_parts(double seconds, Step step) {
 
 double nearing(double per_s, double seconds) { return 1 - elementary::exponential(-per_s * seconds); }
 
+// Height of the surface at the middle of a patch around a section; `around` runs as in the rings of a
+// contact.
+double height_at(const Station& s, int around) {
+  const elementary::SineCosine turn =
+      elementary::sine_cosine(2 * std::numbers::pi * (around + 0.5) / patches_around);
+  const double major = turn.cosine > 0 ? s.major_a : s.major_b;
+  return s.centre.z() + turn.cosine * major * s.lateral.z() +
+         (s.flipped ? -turn.sine : turn.sine) * s.minor * s.down.z();
+}
+
+// Of the way from one height to the other, what is below the level.
+double share_below(double a, double b, double level) {
+  const double low = std::min(a, b);
+  const double high = std::max(a, b);
+  if (level <= low) return 0;
+  if (level >= high) return 1;
+  return (level - low) / (high - low);
+}
+
+Station station_at(const TuftSurface& surface, double along) {
+  const auto after = std::ranges::upper_bound(surface, along, {}, &Station::along);
+  if (after == surface.begin()) return surface.front();
+  if (after == surface.end()) return surface.back();
+  const Station& a = *(after - 1);
+  const Station& b = *after;
+  const double t = (along - a.along) / (b.along - a.along);
+  Station s = t < 0.5 ? a : b;
+  s.centre = (1 - t) * a.centre + t * b.centre;
+  s.major_a = (1 - t) * a.major_a + t * b.major_a;
+  s.major_b = (1 - t) * a.major_b + t * b.major_b;
+  s.minor = (1 - t) * a.minor + t * b.minor;
+  return s;
+}
+
 void rinse(Loading& loading, const Tuft& tuft, const HairFlow& flow, double seconds) {
   Immersion whole;
   whole.patches.fill(1);
@@ -121,6 +155,19 @@ Immersion hung_in(const Tuft& tuft, double depth_mm) {
     const double share = std::clamp(below_mm / row_mm, 0.0, 1.0);
     immersed.inside[static_cast<std::size_t>(i)] = share;
     for (int j = 0; j < patches_around; ++j) immersed.patches[patch_index(i, j)] = share;
+  }
+  return immersed;
+}
+
+Immersion immersed_below(const TuftSurface& surface, double level_mm) {
+  Immersion immersed;
+  if (surface.empty()) return immersed;
+  for (int i = 0; i < patches_along; ++i) {
+    const Station head = station_at(surface, static_cast<double>(i) / patches_along);
+    const Station tail = station_at(surface, (i + 1.0) / patches_along);
+    immersed.inside[static_cast<std::size_t>(i)] = share_below(head.centre.z(), tail.centre.z(), level_mm);
+    for (int j = 0; j < patches_around; ++j)
+      immersed.patches[patch_index(i, j)] = share_below(height_at(head, j), height_at(tail, j), level_mm);
   }
   return immersed;
 }
@@ -187,6 +234,16 @@ void roll(Loading& loading, double turns) {
         side.pigment_ul[c] += share * (mean.pigment_ul[c] - side.pigment_ul[c]);
     }
   }
+}
+
+void stay_at(Loading& loading, const Tuft& tuft, const HairFlow& flow, const PaletteSpot& spot,
+             const Immersion& immersed, double seconds) {
+  if (const auto* bath = std::get_if<Bath>(&spot))
+    steep(loading, flow, immersed, bath->strength, tuft.spec.absorbency_per_s, seconds);
+  if (std::holds_alternative<Cloth>(spot))
+    blot(loading, flow, immersed.patches, tuft.spec.absorbency_per_s, seconds);
+  const bool touches = std::ranges::any_of(immersed.patches, [](double share) { return share > 0; });
+  if (const auto* rim = std::get_if<Rim>(&spot); rim && touches) wipe(loading, rim->fullest);
 }
 
 void tend(Loading& loading, const Tuft& tuft, const HairFlow& flow, const BrushCare& care,

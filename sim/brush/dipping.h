@@ -6,6 +6,7 @@
 #include "signal/action.h"
 #include "sim/brush/loading.h"
 #include "sim/brush/tuft.h"
+#include "sim/brush/tuft_surface.h"
 
 namespace fude {
 
@@ -27,6 +28,9 @@ struct Immersion {
 // Of a tuft that hangs straight down with its tip `depth_mm` below the surface.
 Immersion hung_in(const Tuft& tuft, double depth_mm);
 
+// Of a tuft as it stands: what of it is below the level.
+Immersion immersed_below(const TuftSurface& surface, double level_mm);
+
 // What is immersed nears full hair with ink of this strength at `per_s`, while ink moves on in the tuft.
 void steep(Loading& loading, const HairFlow& flow, const Immersion& immersed, const Concentrations& strength,
            double per_s, double seconds);
@@ -45,6 +49,21 @@ PatchExchange wipe(Loading& loading, double fullest);
 
 // The sides mix: after each turn a third of what told one side from another is left.
 void roll(Loading& loading, double turns);
+
+// What a brush may go to beside the paper: ink or water so deep, a dry cloth, a rim to stroke it off on.
+struct Bath {
+  Concentrations strength{};
+  double depth_mm = 20;
+};
+struct Cloth {};
+struct Rim {
+  double fullest = 0.6;
+};
+using PaletteSpot = std::variant<Bath, Cloth, Rim>;
+
+// The tuft for `seconds` at a spot, where `immersed` of it is below the surface.
+void stay_at(Loading& loading, const Tuft& tuft, const HairFlow& flow, const PaletteSpot& spot,
+             const Immersion& immersed, double seconds);
 
 // All that a painter can do to the ink of one tuft.
 void tend(Loading& loading, const Tuft& tuft, const HairFlow& flow, const BrushCare& care,
