@@ -165,6 +165,16 @@ bool board_goes_on(const cv::Mat& picture, const CornerGrid& grid, const Board& 
   });
 }
 
+// Noise of a sensor and of its packing, and the two fields of a television's picture, turn small markers into
+// others. A little less sharp, ten recorded frames of 720 x 576 gave 611 corners, of which 4 were wrong,
+// instead of 451 and 37, and 0.57 instead of 0.67 px.
+cv::Mat smoothed(const cv::Mat& picture) {
+  constexpr double sigma_px = 0.8;
+  cv::Mat smooth;
+  cv::GaussianBlur(picture, smooth, {}, sigma_px);
+  return smooth;
+}
+
 std::vector<cv::Point2f> charuco_corners(const cv::Mat& picture, const Board& board,
                                          std::vector<int>& numbers) {
   const auto charuco = charuco_board(board);
@@ -227,11 +237,12 @@ Eigen::Vector2d corner_place_m(const Board& board, int number) {
 
 std::optional<BoardView> find_board(const GreyImage& image, const Board& board) {
   if (image.width < 16 || image.height < 16) return std::nullopt;
-  const cv::Mat picture = seen(image);
+  const bool charuco = board.kind == BoardKind::charuco;
   BoardView view;
   std::vector<cv::Point2f> corners;
   try {
-    if (board.kind == BoardKind::chessboard) {
+    const cv::Mat picture = charuco ? smoothed(seen(image)) : seen(image);
+    if (!charuco) {
       corners = chessboard_corners(picture, board);
       for (int i = 0; i < static_cast<int>(corners.size()); ++i) view.corners.push_back(i);
     } else {
@@ -240,7 +251,7 @@ std::optional<BoardView> find_board(const GreyImage& image, const Board& board) 
     if (static_cast<int>(corners.size()) < fewest_corners || on_one_line(board, view.corners))
       return std::nullopt;
     refine(picture, corners);
-    if (board.kind == BoardKind::chessboard) {
+    if (!charuco) {
       const CornerGrid grid(corners, board.columns, board.rows);
       const Shades inside = shades_of(squares_of(picture, grid, 0, board.columns - 2, 0, board.rows - 2));
       view.goes_on = board_goes_on(picture, grid, board, inside);
