@@ -106,7 +106,8 @@ Json brush_figures(const BrushSpec& spec, const BenchGesture& gesture, int tufts
 #ifdef FUDE_PEERS
   const PeerBench p = bench_peers(spec, gesture);
   const auto one = [](const PeerFigures& f) {
-    return Json{{"us_per_frame", times(f.us_per_frame)},
+    return Json{{"frames", f.frames},
+                {"us_per_frame", times(f.us_per_frame)},
                 {"energy", f.energy},
                 {"max_violation", f.max_violation},
                 {"failures", f.failures}};

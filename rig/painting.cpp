@@ -97,6 +97,7 @@ bool Painting::move(PenEnd end, const BrushInput& input) {
       std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   ++solves_.solves;
   solves_.unconverged += !frame.solve.converged;
+  solves_.last_on_hand = frame.solve.on_hand;
   if (!frame.deposit) return false;
   unanswered_[pour({.what = std::move(*frame.deposit)})] = {step_ + exchange_delay_, end};
   return true;

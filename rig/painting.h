@@ -16,6 +16,7 @@
 #include "rig/snapshot_memory.h"
 #include "signal/action.h"
 #include "signal/brush_input.h"
+#include "signal/contact_model.h"
 #include "signal/result.h"
 #include "sim/brush/brush.h"
 #include "sim/ink/ink.h"
@@ -39,7 +40,8 @@ inline constexpr std::size_t pen_ends = 2;
 struct SolveCounts {
   std::int64_t solves = 0;
   std::int64_t unconverged = 0;
-  double last_us = 0;  // of the wall: the last sample's solves and footprints
+  double last_us = 0;   // of the wall: the last sample's solves and footprints
+  Wrench last_on_hand;  // what the brush did to the hand at the last sample
 };
 
 // All of a painting's state between two steps; restoring it is exact.

@@ -51,9 +51,10 @@ bool undoes(const Session& session) {
   });
 }
 
-struct Stopwatch {
+struct Observed {
   std::vector<double> step_ms;
   std::vector<double> solve_us;
+  std::vector<SolvedForce> forces;
 };
 
 }  // namespace
@@ -89,7 +90,7 @@ namespace {
 
 // Paints the session's inputs on the sheet it began on.
 Result<History> paint_again(const Session& session, const ReplaySettings& settings,
-                            const std::function<void(double)>& progress, Stopwatch& stopwatch) {
+                            const std::function<void(double)>& progress, Observed& observed) {
   auto plan = plan_sheet(session, settings.wish);
   if (!plan) return tl::unexpected(plan.error());
   PaintingSetup setup = settings.painting;
@@ -110,8 +111,11 @@ Result<History> paint_again(const Session& session, const ReplaySettings& settin
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     history.advance_to(inputs[i].step);
     history.apply(inputs[i].input);
-    if (std::holds_alternative<BrushMove>(inputs[i].input))
-      stopwatch.solve_us.push_back(history.painting().solves().last_us);
+    if (const auto* move = std::get_if<BrushMove>(&inputs[i].input)) {
+      const SolveCounts& solves = history.painting().solves();
+      observed.solve_us.push_back(solves.last_us);
+      observed.forces.push_back({move->input.time.host, move->end, solves.last_on_hand});
+    }
     if (since(told) > 0.2) {
       told = WallClock::now();
       progress(static_cast<double>(i) / static_cast<double>(inputs.size()));
@@ -124,7 +128,7 @@ Result<History> paint_again(const Session& session, const ReplaySettings& settin
     if (settings.settle.until_dry && history.painting().ink().still()) break;
   }
   (void)history.painting().ink();
-  stopwatch.step_ms = history.painting().step_ms();
+  observed.step_ms = history.painting().step_ms();
   progress(1);
   return history;
 }
@@ -138,8 +142,8 @@ Error too_little_memory() {
 Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
                         const std::function<void(double)>& progress) try {
   const auto start = WallClock::now();
-  Stopwatch stopwatch;
-  auto history = paint_again(session, settings, progress, stopwatch);
+  Observed observed;
+  auto history = paint_again(session, settings, progress, observed);
   if (!history) return tl::unexpected(history.error());
   const Ink& ink = history->painting().ink();
   const InkSetup& setup = settings.painting.ink;
@@ -149,14 +153,15 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
   report.dt_s = history->painting().step_s();
   report.steps = history->step();
   count_samples(session, report);
-  report.step_ms = quantiles(std::move(stopwatch.step_ms));
-  report.us_per_solve = quantiles(std::move(stopwatch.solve_us));
+  report.step_ms = quantiles(std::move(observed.step_ms));
+  report.us_per_solve = quantiles(std::move(observed.solve_us));
   report.solves = history->painting().solves();
   report.ink = ink.totals();
   report.backend = setup.backend == InkBackend::gl ? "gl" : "cpu";
   report.isa = setup.backend == InkBackend::gl ? "" : name_of(*choose_instruction_set(setup.instruction_set));
   report.threads = setup.threads;
   for (const Pigment& pigment : settings.palette.pigments) report.pigments.emplace_back(pigment.name);
+  result.forces = std::move(observed.forces);
   result.picture = picture_of(ink, settings.palette);
   report.picture_sha256 = picture_sha256(result.picture);
   report.peak_mb = peak_megabytes();
@@ -167,8 +172,8 @@ Result<Replayed> replay(const Session& session, const ReplaySettings& settings,
 
 Result<SheetSnapshot> painted_sheet(const Session& session, const ReplaySettings& settings,
                                     const std::function<void(double)>& progress) try {
-  Stopwatch stopwatch;
-  const auto history = paint_again(session, settings, progress, stopwatch);
+  Observed observed;
+  const auto history = paint_again(session, settings, progress, observed);
   if (!history) return tl::unexpected(history.error());
   return sheet_of(history->painting().ink());
 } catch (const std::bad_alloc&) {

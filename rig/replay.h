@@ -63,9 +63,17 @@ struct ReplaySettings {
   std::map<std::string, std::string> to_record;  // what a session painted with these says of them
 };
 
+// What the solved brush did to the hand at one painted sample, where no device measured it.
+struct SolvedForce {
+  Timestamp time;  // of the sample, by the host
+  PenEnd end{};
+  Wrench on_hand;
+};
+
 struct Replayed {
   Picture picture;
   ReplayReport report;
+  std::vector<SolvedForce> forces;  // one a painted sample, in the order of painting
 };
 
 // `progress` is told the share done, 0 to 1, a few times a second at most.

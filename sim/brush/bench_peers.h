@@ -12,8 +12,9 @@ namespace fude {
 
 struct PeerFigures {
   std::string name;
+  int frames = 0;
   BrushBench::Times us_per_frame;
-  double energy = 0;         // mN mm, summed over the frames
+  double energy = 0;         // mN mm, mean of the frames
   double max_violation = 0;  // of a constraint, over the length of the tuft
   int failures = 0;          // frames in which it said itself that it found no solution
 };
@@ -30,7 +31,8 @@ struct PeerBench {
 
 // Each frame is frozen as our own solution of the one before left it, and solved by each from the same start:
 // NLopt's SLSQP (Kraft) and Ipopt with a quasi-Newton Hessian. The peers are spared the unknowns without room
-// and a second evaluation at one point. The least time of `runs`.
+// and a second evaluation at one point. Ipopt, which
+// takes a thousand times as long, is asked every hundredth frame. The least time of `runs`.
 PeerBench bench_peers(const BrushSpec& spec, const BenchGesture& gesture, int runs = 1);
 
 }  // namespace fude

@@ -44,6 +44,7 @@ void take_worse(SolveReport& sum, const SolveReport& step) {
   sum.kkt_residual = std::max(sum.kkt_residual, step.kkt_residual);
   sum.violation_mm = std::max(sum.violation_mm, step.violation_mm);
   sum.energy_mn_mm = step.energy_mn_mm;
+  sum.on_hand = step.on_hand;
 }
 
 }  // namespace

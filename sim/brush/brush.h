@@ -49,7 +49,7 @@ std::vector<std::byte> bytes_of(const BrushState& state);
 Result<BrushState> brush_state_of(std::span<const std::byte> bytes);
 
 // What one call of move did. A long frame is solved in several steps: iterations, residual and
-// violation are those of the worst step, energy that of the last.
+// violation are those of the worst step, energy and the force on the hand those of the last.
 struct BrushFrame {
   int steps = 0;
   SolveReport solve;

@@ -217,22 +217,28 @@ void TuftProgram::add_rubbing(const Variables& x, const Skeleton& s, NodeForces&
   }
 }
 
+TuftProgram::Clearance TuftProgram::clearance(const Variables& x, const Skeleton& s, int k) const {
+  const double r = tuft_.radius_mm[index(k)];
+  const bool stretches = k < tuft_.segments;
+  const Section section =
+      section_of(r, stretches ? x[layout_.stretch(k, 0)] : 0, stretches ? x[layout_.stretch(k, 1)] : 0);
+  const Reach reach = reach_below(section, s.lateral[index(k)].z());
+  const double share = tuft_.contact_share;
+  const double minor_by_s = -0.5 * section.minor * section.minor / (r * r);
+  return {s.node[index(k)].z() - share * reach.depth, -share * reach.by_lateral_z,
+          -share * (reach.by_major_a + reach.by_minor * minor_by_s),
+          -share * (reach.by_major_b + reach.by_minor * minor_by_s)};
+}
+
 void TuftProgram::fill_constraints(const Variables& x, const Skeleton& s, Evaluation& at) const {
   const int n = tuft_.segments;
   for (int k = 1; k <= n; ++k) {
-    const double r = tuft_.radius_mm[index(k)];
-    const double s_a = k < n ? x[layout_.stretch(k, 0)] : 0;
-    const double s_b = k < n ? x[layout_.stretch(k, 1)] : 0;
-    const Section section = section_of(r, s_a, s_b);
-    const Reach reach = reach_below(section, s.lateral[index(k)].z());
-    const double share = tuft_.contact_share;
-    at.constraints[k - 1] = s.node[index(k)].z() - share * reach.depth;
-    add_joint_gradient(s, k, Vector3d::UnitZ(), Vector3d(0, 0, -share * reach.by_lateral_z),
-                       at.jacobian.row(k - 1));
+    const Clearance clear = clearance(x, s, k);
+    at.constraints[k - 1] = clear.height;
+    add_joint_gradient(s, k, Vector3d::UnitZ(), Vector3d(0, 0, clear.by_lateral_z), at.jacobian.row(k - 1));
     if (k == n) continue;
-    const double minor_by_s = -0.5 * section.minor * section.minor / (r * r);
-    at.jacobian(k - 1, layout_.stretch(k, 0)) = -share * (reach.by_major_a + reach.by_minor * minor_by_s);
-    at.jacobian(k - 1, layout_.stretch(k, 1)) = -share * (reach.by_major_b + reach.by_minor * minor_by_s);
+    at.jacobian(k - 1, layout_.stretch(k, 0)) = clear.by_stretch_a;
+    at.jacobian(k - 1, layout_.stretch(k, 1)) = clear.by_stretch_b;
   }
   const BlockingPlane& plane = frozen_.plane;
   if (!plane.stands) {
@@ -244,6 +250,21 @@ void TuftProgram::fill_constraints(const Variables& x, const Skeleton& s, Evalua
   add_joint_gradient(s, n, Vector3d(-plane.facing.x(), -plane.facing.y(), 0), Vector3d::Zero(),
                      at.jacobian.row(n));
   at.jacobian(n, layout_.yielding()) = 1;
+}
+
+NodeForces TuftProgram::paper_pull(const Variables& x, const Skeleton& skeleton,
+                                   const Multipliers& multipliers) const {
+  const int n = tuft_.segments;
+  NodeForces forces;
+  Evaluation unused;
+  unused.gradient.setZero(layout_.size());
+  add_rubbing(x, skeleton, forces, unused);
+  for (int k = 1; k <= n; ++k) {
+    forces.at_node[index(k)].z() -= multipliers[k - 1];
+    forces.at_lateral[index(k)].z() -= multipliers[k - 1] * clearance(x, skeleton, k).by_lateral_z;
+  }
+  if (frozen_.plane.stands) forces.at_node[index(n)].head<2>() += multipliers[n] * frozen_.plane.facing;
+  return forces;
 }
 
 void TuftProgram::evaluate(const Variables& x, Evaluation& at) const {

@@ -62,11 +62,23 @@ class TuftProgram : public Program {
 
   int constraints() const { return tuft_.segments + 1; }
 
+  // What rubbing and the constraints with these multipliers pull at the nodes: the derivative of the
+  // Lagrangian by node and lateral line, mN. Nothing else of it knows where the handle is.
+  NodeForces paper_pull(const Variables& x, const Skeleton& skeleton, const Multipliers& multipliers) const;
+
  private:
   void add_bends(const Variables& x, Evaluation& at) const;
   void add_stretches(const Variables& x, Evaluation& at) const;
   void add_internal_friction(const Variables& x, Evaluation& at) const;
   void add_rubbing(const Variables& x, const Skeleton& skeleton, NodeForces& forces, Evaluation& at) const;
+  // Height of node k's shrunk section, and its derivatives by the lateral line's z and by the two stretches.
+  struct Clearance {
+    double height = 0;
+    double by_lateral_z = 0;
+    double by_stretch_a = 0;
+    double by_stretch_b = 0;
+  };
+  Clearance clearance(const Variables& x, const Skeleton& skeleton, int k) const;
   void fill_constraints(const Variables& x, const Skeleton& skeleton, Evaluation& at) const;
 
   const Tuft& tuft_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "signal/elementary.h"
+#include "sim/brush/contact_force.h"
 #include "sim/brush/section.h"
 #include "sim/brush/sqp.h"
 
@@ -238,7 +239,7 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
 }
 
 SolveReport advance(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle>& paper_from_handle,
-                    double step_s, bool jumped) {
+                    double step_s, bool jumped, ContactModel* model) {
   step_s = std::clamp(step_s, shortest_step_s, longest_step_s);
   if (jumped) let_go(state);
   const bool was_in_contact = state.in_contact;
@@ -259,12 +260,15 @@ SolveReport advance(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle
   if (!state.x.allFinite() || !std::isfinite(solved.value)) {
     // Nothing a hand can do leads here; a tuft at rest is the only state left that means anything.
     state = rest_state(tuft);
-    return {solved.iterations, false, 1, 0, 0};
+    if (model) *model = {};
+    return {solved.iterations, false, 1, 0, 0, {}};
   }
   state.paper_from_handle = pose;
   state.placed = true;
+  if (model) *model = contact_model(tuft, frozen, state.x, solved.multipliers);
+  const Wrench on_hand = contact_wrench(tuft, frozen, state.x, solved.multipliers);
   settle(tuft, state, frozen, solved.multipliers);
-  return {solved.iterations, solved.converged, solved.residual, solved.violation, solved.value};
+  return {solved.iterations, solved.converged, solved.residual, solved.violation, solved.value, on_hand};
 }
 
 }  // namespace fude

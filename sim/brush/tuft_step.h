@@ -1,6 +1,7 @@
 // One step of the tuft in time: state and the handle's next pose in, next state out (Chu 2.5).
 #pragma once
 
+#include "signal/contact_model.h"
 #include "sim/brush/tuft.h"
 #include "sim/brush/tuft_state.h"
 
@@ -14,6 +15,7 @@ struct SolveReport {
   double kkt_residual = 0;
   double violation_mm = 0;
   double energy_mn_mm = 0;
+  Wrench on_hand;  // contact_force.h
 };
 
 // The pose as the tuft can follow it: the root never lower than `lowest_root` tuft lengths.
@@ -25,8 +27,9 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
                        double step_s);
 
 // Solves for the tuft at `paper_from_handle`, `step_s` later. `jumped`: the hand did not draw the
-// tuft there, so what stuck to the paper is let go. Steps are held between 0.1 ms and 0.5 s.
+// tuft there, so what stuck to the paper is let go. Steps are held between 0.1 ms and 0.5 s. Where `model` is
+// given, it becomes the contact model at the solution, at the cost of some three solves.
 SolveReport advance(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle>& paper_from_handle,
-                    double step_s, bool jumped);
+                    double step_s, bool jumped, ContactModel* model = nullptr);
 
 }  // namespace fude

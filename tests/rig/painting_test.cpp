@@ -169,6 +169,20 @@ TEST(Replay, ThreadsDoNotChangeThePicture) {
   EXPECT_EQ(painted(session, settings(1)).picture_sha256, painted(session, settings(2)).picture_sha256);
 }
 
+TEST(Replay, TellsTheForceOfEveryPaintedSample) {
+  const Session session = gesture::session(150, 2);
+  const std::vector<SolvedForce> forces = replay(session, settings(), [](double) {})->forces;
+  ASSERT_GT(forces.size(), 100);
+  double hardest = 0;
+  for (const SolvedForce& f : forces) {
+    EXPECT_GE(f.on_hand.force_n.z(), -1e-9);  // paper pushes up
+    hardest = std::max(hardest, f.on_hand.force_n.norm());
+  }
+  EXPECT_GT(hardest, 0.005);  // newtons: a soft tuft under a hand
+  EXPECT_LT(hardest, 2);
+  std::printf("figure: the brush pushes the hand with up to %.3f N in the scripted gesture\n", hardest);
+}
+
 // Release builds, sanitizers and other compilers are held to the same picture. It changes with the physics of
 // brush, ink or colour, and then on purpose.
 TEST(Replay, IsTheSamePictureInEveryBuild) {

@@ -117,8 +117,9 @@ TEST(Sqp, AgreesWithSlsqpAlongPressDragTurnLift) {
     ASSERT_TRUE(advance(tuft, state, pose, step_s, f == 0).converged) << "frame " << f;
   }
   RecordProperty("compared", compared);
-  std::printf("  %d steps compared: gap %.2e, residual %.2e, violation %.2e mm; lower than SLSQP in %d\n",
-              compared, worst_gap, worst_residual, worst_violation, lower);
+  std::printf(
+      "figure: %d steps beside SLSQP: gap %.2e, residual %.2e, violation %.2e mm; lower than SLSQP in %d\n",
+      compared, worst_gap, worst_residual, worst_violation, lower);
   EXPECT_LE(worst_gap, 1e-3);
   EXPECT_LE(worst_residual, 1e-4);
   EXPECT_LE(worst_violation, 1e-6 * spec.tuft_length_mm);
@@ -137,9 +138,9 @@ TEST(Sqp, CarriedHessianSavesIterations) {
     forgetful.hessian.resize(0, 0);
     without += advance(tuft, forgetful, pose, step_s, f == 0).iterations;
   }
-  std::printf("  %.2f iterations a step with the Hessian carried on, %.2f without\n", 1.0 * with / frames,
-              1.0 * without / frames);
-  EXPECT_LT(with, 0.8 * without);
+  std::printf("figure: %.2f iterations a step with the Hessian carried on, %.2f without\n",
+              1.0 * with / frames, 1.0 * without / frames);
+  EXPECT_LT(with, 0.55 * without);  // thesis, table 2.1: 7.4 for 14.6
 }
 
 TEST(QuadraticProgram, SolvesWithBoundsAndRows) {
