@@ -154,8 +154,8 @@ Result<void> show(const ShowOptions& options) {
           write_png(options.out, picture_of(*posed, *wish), {.depth = 8, .overwrite = options.force});
       !written)
     return written;
-  const Eigen::Vector3d tip = posed->brush.shape().spine.back();
-  const double stands = posed->brush.state().tuft.paper_from_handle.translation.z();
+  const Eigen::Vector3d tip = posed->brush.shape().front().spine.back();
+  const double stands = posed->brush.state().paper_from_handle.translation.z();
   if (options.json) {
     std::printf("%s\n", nlohmann::ordered_json{{"tip_mm", {tip.x(), tip.y(), tip.z()}},
                                                {"root_height_mm", stands},

@@ -96,7 +96,7 @@ void LivePainting::publish() {
   Painting& painting = history_.painting();
   LiveStatus status;
   status.step = history_.step();
-  status.tuft = painting.brush(PenEnd::tip).shape();
+  status.brush = painting.brush(PenEnd::tip).shape();
   status.hair = seen_tufts(painting.brush(PenEnd::tip));
   status.insides = insides_of(painting.brush(PenEnd::tip));
   status.unconverged = painting.solves().unconverged;

@@ -36,7 +36,7 @@ struct LiveStatus {
   double latency_ms = 0;  // last sample: from its stamp until the ink can read its deposit
   PenSample pen;
   Eigen::Vector2d nib_mm = Eigen::Vector2d::Zero();
-  TuftShape tuft;
+  BrushShape brush;
   std::vector<SeenTuft> hair;
   TuftInsides insides;
   std::int64_t unconverged = 0;  // solves so far

@@ -306,7 +306,7 @@ class Studio {
     if (status.unconverged > unconverged_) unconverged_at_ = now();
     unconverged_ = status.unconverged;
     const bool converged = !unconverged_at_ || now() - *unconverged_at_ > seen_for;
-    if (display_.development) draw_insides(canvas, view_, status.tuft, status.insides, converged);
+    if (display_.development) draw_insides(canvas, view_, status.brush, status.insides, converged);
   }
 
   void draw() {

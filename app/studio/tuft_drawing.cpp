@@ -88,24 +88,25 @@ void TuftDrawing::draw(ImDrawList& canvas, const View& view, std::span<const See
                   point(corner + size));
 }
 
-void draw_insides(ImDrawList& canvas, const View& view, const TuftShape& tuft, const TuftInsides& insides,
+void draw_insides(ImDrawList& canvas, const View& view, const BrushShape& brush, const TuftInsides& insides,
                   bool converged) {
-  for (std::size_t k = 0; k < tuft.spine.size(); ++k) {
-    const ImVec2 node = on_screen(view, tuft.spine[k]);
-    if (k > 0)
-      canvas.AddLine(on_screen(view, tuft.spine[k - 1]), node, converged ? bone : alarm,
-                     converged ? 2.0F : 4.0F);
-    canvas.AddLine(on_screen(view, tuft.lateral_a[k]), on_screen(view, tuft.lateral_b[k]), rib, 1.5F);
-    canvas.AddCircleFilled(node, 3, converged ? bone : alarm);
-  }
+  for (const TuftShape& tuft : brush)
+    for (std::size_t k = 0; k < tuft.spine.size(); ++k) {
+      const ImVec2 node = on_screen(view, tuft.spine[k]);
+      if (k > 0)
+        canvas.AddLine(on_screen(view, tuft.spine[k - 1]), node, converged ? bone : alarm,
+                       converged ? 2.0F : 4.0F);
+      canvas.AddLine(on_screen(view, tuft.lateral_a[k]), on_screen(view, tuft.lateral_b[k]), rib, 1.5F);
+      canvas.AddCircleFilled(node, 3, converged ? bone : alarm);
+    }
   for (const TuftInsides::Contact& touch : insides.contacts) {
     canvas.AddCircle(on_screen(view, touch.node), 5, contact, 0, 1.5F);
     canvas.AddLine(on_screen(view, touch.node), point(view.to_window(touch.anchor)), contact, 1.5F);
   }
   for (const auto& line : insides.planes)
     canvas.AddLine(point(view.to_window(line[0])), point(view.to_window(line[1])), plane, 3);
-  if (!converged && !tuft.spine.empty())
-    canvas.AddText(on_screen(view, tuft.spine.front()), alarm, "not converged");
+  if (!converged && !brush.empty())
+    canvas.AddText(on_screen(view, brush.front().spine.front()), alarm, "not converged");
 }
 
 }  // namespace fude

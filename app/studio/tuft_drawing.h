@@ -34,7 +34,7 @@ class TuftDrawing {
 };
 
 // `converged`: whether the last frame was solved; one that was not is drawn in red.
-void draw_insides(ImDrawList& canvas, const View& view, const TuftShape& tuft, const TuftInsides& insides,
+void draw_insides(ImDrawList& canvas, const View& view, const BrushShape& brush, const TuftInsides& insides,
                   bool converged);
 
 }  // namespace fude

@@ -81,7 +81,7 @@ Bands paper_at(const Vector2d& mm, double mm_per_pixel, const Mark& mark, const 
 
 Projection projection_of(const PosedBrush& posed, double length_mm, const PictureWish& wish) {
   // About the tuft and its mark, from the painter's side.
-  const Vector3d root = posed.brush.state().tuft.paper_from_handle.translation;
+  const Vector3d root = posed.brush.state().paper_from_handle.translation;
   const Mark& mark = posed.mark;
   double left = root.x() - 0.8 * length_mm;
   double right = root.x() + 0.8 * length_mm;
@@ -100,7 +100,14 @@ Projection projection_of(const PosedBrush& posed, double length_mm, const Pictur
 }  // namespace
 
 std::vector<SeenTuft> seen_tufts(const Brush& brush) {
-  return {{brush.shape().sections, offered(brush.state().loading)}};
+  const std::vector<InkLoad> loads = offered(brush.state().loading);
+  std::vector<SeenTuft> seen;
+  for (TuftShape& tuft : brush.shape()) {
+    std::vector<InkLoad> own;
+    for (const std::uint16_t patch : tuft.patches) own.push_back(loads[patch]);
+    seen.push_back({std::move(tuft.sections), std::move(own)});
+  }
+  return seen;
 }
 
 Picture picture_of(const PosedBrush& posed, const PictureWish& wish) {
@@ -112,7 +119,7 @@ Picture picture_of(const PosedBrush& posed, const PictureWish& wish) {
       tuft_layers(tufts, wish.look, wish.opacity, wish.palette, projection, whole, samples);
   for (TriangleLayer& shadow : shadow_layers(tufts, projection, whole, samples))
     layers.push_back(std::move(shadow));
-  layers.push_back(handle_layer(tufts.front().surface.front(), posed.brush.state().tuft.paper_from_handle,
+  layers.push_back(handle_layer(tufts.front().surface.front(), posed.brush.state().paper_from_handle,
                                 length_mm, projection, whole));
   const TintedImage image = blend(layers);
 

@@ -67,7 +67,7 @@ Result<PosedBrush> lead_to(const BrushSpec& spec, const Pose<Paper, Handle>& pap
 }
 
 void draw_stroke(PosedBrush& posed, double mm) {
-  const Pose<Paper, Handle> start = posed.brush.state().tuft.paper_from_handle;
+  const Pose<Paper, Handle> start = posed.brush.state().paper_from_handle;
   const double press_mm = 0.3 * start.translation.z();
   lead(posed, stroke_s, [&](double t) {
     Pose<Paper, Handle> pose = start;

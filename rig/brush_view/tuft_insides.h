@@ -1,4 +1,4 @@
-// What the solver knows of a tuft beside its shape, for the development view.
+// What the solver knows of the tufts beside their shape, for the development view.
 #pragma once
 
 #include <Eigen/Core>

@@ -47,28 +47,101 @@ void take_worse(SolveReport& sum, const SolveReport& step) {
   sum.on_hand = step.on_hand;
 }
 
+TuftShape shape_of(const Tuft& tuft, const TuftState& state, TuftSurface sections) {
+  const Skeleton skeleton = pose_skeleton(tuft, state.x, state.paper_from_handle);
+  const Layout layout{tuft.segments};
+  TuftShape shape;
+  for (int k = 0; k <= tuft.segments; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const bool stretches = k > 0 && k < tuft.segments;
+    const double rest = (1 - tuft.spec.lateral_share) * tuft.radius_mm[i];
+    const double a = rest + (stretches ? state.x[layout.stretch(k, 0)] : 0);
+    const double b = rest + (stretches ? state.x[layout.stretch(k, 1)] : 0);
+    shape.spine.push_back(skeleton.node[i]);
+    shape.lateral_a.push_back(skeleton.node[i] + a * skeleton.lateral[i]);
+    shape.lateral_b.push_back(skeleton.node[i] - b * skeleton.lateral[i]);
+  }
+  shape.sections = std::move(sections);
+  return shape;
+}
+
 }  // namespace
 
 Brush::Brush(const BrushSpec& spec, std::uint64_t seed)
-    : tuft_(make_tuft(spec)), flow_(flow_in(tuft_)), texture_(spec, seed) {
-  state_.tuft = rest_state(tuft_);
+    : tuft_(make_tuft(spec)), flow_(flow_in(tuft_)), seed_(seed) {
+  grow(arrangement(spec, seed));
   state_.loading = dry_loading(tuft_);
+}
+
+void Brush::grow(const std::vector<TuftRoot>& roots) {
+  state_.tufts.clear();
+  for (const TuftRoot& root : roots) state_.tufts.push_back({root, {}});
+  make_tufts();
+  for (std::size_t i = 0; i < made_.size(); ++i) state_.tufts[i].state = rest_state(made_[i].tuft);
+}
+
+void Brush::make_tufts() {
+  made_.clear();
+  for (const BrushTuft& one : state_.tufts) {
+    const BrushSpec& from = one.root.parent < 0
+                                ? tuft_.spec
+                                : made_[static_cast<std::size_t>(one.root.parent)].tuft.spec;
+    const BrushSpec spec = hair_of(from, one.root);
+    const std::uint64_t seed = seed_ + made_.size();
+    made_.push_back({make_tuft(spec), HairTexture(spec, seed), patches_of(tuft_.spec, one.root)});
+  }
+}
+
+Pose<Paper, Handle> Brush::root_of(std::size_t tuft) const {
+  const TuftRoot& root = state_.tufts[tuft].root;
+  if (root.parent < 0) return root_pose(tuft_.spec, root, state_.paper_from_handle);
+  const auto parent = static_cast<std::size_t>(root.parent);
+  return root_pose(made_[parent].tuft, state_.tufts[parent].state, root);
+}
+
+// Each tuft in its turn: a child's root moves with its parent (Chu 2.5.7).
+SolveReport Brush::advance_tufts(double step_s, bool jumped) {
+  SolveReport all;
+  double energy = 0;
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    take_worse(all, advance(made_[i].tuft, state_.tufts[i].state, root_of(i), step_s, jumped));
+    energy += all.energy_mn_mm;
+  }
+  all.energy_mn_mm = energy;
+  return all;
 }
 
 // Springs back in free air, in one step however long it was away.
 void Brush::away(double elapsed_s) {
-  Pose<Paper, Handle> pose = state_.tuft.paper_from_handle;
-  pose.translation.z() = out_of_reach_mm;
-  advance(tuft_, state_.tuft, pose, elapsed_s, true);
+  state_.paper_from_handle.translation.z() = out_of_reach_mm;
+  advance_tufts(elapsed_s, true);
   state_.footprint = {};
   even_out(state_.loading, flow_, std::min(elapsed_s, longest_flow_s));
 }
 
-// The tuft with the ink that clings to it, as its last footprint shows it.
-TuftSurface Brush::marked_surface() const {
-  TuftSurface surface = surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
-  press(tuft_, state_.tuft.reactions, surface);
-  return swollen(std::move(surface), state_.footprint.soak_mm);
+BrushSurface Brush::surface() const {
+  BrushSurface surface;
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const TuftState& state = state_.tufts[i].state;
+    surface.push_back(surface_of(made_[i].tuft, state.x, state.paper_from_handle));
+  }
+  return surface;
+}
+
+// The tufts with the ink that clings to them, as their last footprint shows them.
+BrushSurface Brush::marked_surface() const {
+  BrushSurface marked = surface();
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    press(made_[i].tuft, state_.tufts[i].state.reactions, marked[i]);
+    marked[i] = swollen(std::move(marked[i]), state_.footprint.soak_mm);
+  }
+  return marked;
+}
+
+std::vector<TuftHair> Brush::hair() const {
+  std::vector<TuftHair> hair;
+  for (const Made& made : made_) hair.push_back({&made.texture, made.patches});
+  return hair;
 }
 
 void Brush::take_footprint() { state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading)}; }
@@ -112,7 +185,7 @@ BrushFrame Brush::move(const BrushInput& input) {
   Pose<Paper, Handle> target = input.paper_from_handle;
   target.rotation.normalize();
   target = reachable_pose(tuft_, target);
-  const Pose<Paper, Handle> start = state_.tuft.paper_from_handle;
+  const Pose<Paper, Handle> start = state_.paper_from_handle;
   const bool jumped = input.after_gap || elapsed_s > gap_s || !state_.footprint.taken ||
                       (target.translation - start.translation).norm() > jump_mm;
   if (jumped) sweep_.come_from_nowhere();
@@ -122,15 +195,16 @@ BrushFrame Brush::move(const BrushInput& input) {
   const double step_s = elapsed_s / frame.steps;
   std::vector<TimedSurface> after;
   for (int k = 1; k <= frame.steps; ++k) {
-    const Pose<Paper, Handle> pose =
+    state_.paper_from_handle =
         jumped ? target : between(start, target, static_cast<double>(k) / frame.steps);
-    take_worse(frame.solve, advance(tuft_, state_.tuft, pose, step_s, jumped));
+    take_worse(frame.solve, advance_tufts(step_s, jumped));
     take_footprint();
     after.push_back({marked_surface(), step_s});
   }
 
   const std::vector<InkLoad> looks = offered(state_.loading);
-  std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, {texture_, looks, grain_.get()});
+  const std::vector<TuftHair> tufts = hair();
+  std::optional<FootprintMap> map = sweep_.sweep(after, tuft_.spec.cell_mm, {tufts, looks, grain_.get()});
   if (!map) {
     even_out(state_.loading, flow_, std::min(elapsed_s, longest_flow_s));
     return frame;
@@ -167,34 +241,32 @@ void Brush::tend(const BrushCare& care) {
 void Brush::set_endless(bool endless) { state_.loading.endless = endless; }
 
 void Brush::reshape() {
-  state_.tuft = rest_state(tuft_);
+  grow(arrangement(tuft_.spec, seed_));
   state_.footprint = {};
 }
 
 void Brush::restore(const BrushState& state) {
-  if (state.tuft.x.size() != state_.tuft.x.size()) throw std::invalid_argument("the state of another tuft");
-  state_ = state;
+  const BrushState before = std::exchange(state_, state);
+  make_tufts();
+  for (std::size_t i = 0; i < made_.size(); ++i)
+    if (state_.tufts[i].state.x.size() != Layout{made_[i].tuft.segments}.size()) {
+      state_ = before;
+      make_tufts();
+      throw std::invalid_argument("the state of another brush");
+    }
   if (state_.footprint.taken)
     sweep_.come_from(marked_surface());
   else
     sweep_.come_from_nowhere();
 }
 
-TuftShape Brush::shape() const {
-  const Skeleton skeleton = pose_skeleton(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
-  const Layout layout{tuft_.segments};
-  TuftShape shape;
-  for (int k = 0; k <= tuft_.segments; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const bool stretches = k > 0 && k < tuft_.segments;
-    const double rest = (1 - tuft_.spec.lateral_share) * tuft_.radius_mm[i];
-    const double a = rest + (stretches ? state_.tuft.x[layout.stretch(k, 0)] : 0);
-    const double b = rest + (stretches ? state_.tuft.x[layout.stretch(k, 1)] : 0);
-    shape.spine.push_back(skeleton.node[i]);
-    shape.lateral_a.push_back(skeleton.node[i] + a * skeleton.lateral[i]);
-    shape.lateral_b.push_back(skeleton.node[i] - b * skeleton.lateral[i]);
+BrushShape Brush::shape() const {
+  BrushSurface surfaces = surface();
+  BrushShape shape;
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    shape.push_back(shape_of(made_[i].tuft, state_.tufts[i].state, std::move(surfaces[i])));
+    shape.back().patches = made_[i].patches;
   }
-  shape.sections = surface_of(tuft_, state_.tuft.x, state_.tuft.paper_from_handle);
   return shape;
 }
 

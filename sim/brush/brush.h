@@ -1,7 +1,7 @@
 // A brush: poses of the handle in, marks on the paper out (Chu chapter 2).
 //
-// A thin shell around pure steps: tuft_step.h moves the tuft, footprint.h sees where it touched,
-// loading.h keeps its ink. Paper frame, millimetres; time from input.time.host. One thread at a time.
+// A thin shell around pure steps: arrangement.h says how it is made of tufts, tuft_step.h moves each,
+// footprint.h sees where they touched, loading.h keeps the ink. Paper frame, millimetres; time from input.time.host. One thread at a time.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +17,7 @@
 #include "signal/ink_event.h"
 #include "signal/paper_grain.h"
 #include "signal/result.h"
+#include "sim/brush/arrangement.h"
 #include "sim/brush/brush_spec.h"
 #include "sim/brush/dipping.h"
 #include "sim/brush/footprint.h"
@@ -28,15 +29,16 @@
 
 namespace fude {
 
-// The footprint that the next is swept from: of the tuft as it stands.
+// The footprint that the next is swept from: of the tufts as they stand.
 struct Footprint {
   bool taken = false;
-  double soak_mm = 0;  // by which the tuft was swollen
+  double soak_mm = 0;  // by which the tufts were swollen
 };
 
 // All that a brush remembers; copying it is a snapshot.
 struct BrushState {
-  TuftState tuft;
+  std::vector<BrushTuft> tufts;            // a child after its parent
+  Pose<Paper, Handle> paper_from_handle;  // as last followed: never lower than the brush allows
   Loading loading;
   Footprint footprint;
   bool timed = false;  // there is a last time
@@ -48,8 +50,8 @@ struct BrushState {
 std::vector<std::byte> bytes_of(const BrushState& state);
 Result<BrushState> brush_state_of(std::span<const std::byte> bytes);
 
-// What one call of move did. A long frame is solved in several steps: iterations, residual and
-// violation are those of the worst step, energy and the force on the hand those of the last.
+// What one call of move did. A long frame is solved in several steps: iterations, residual and violation are
+// those of the worst step of any tuft, energy and the force on the hand those of all in the last.
 struct BrushFrame {
   int steps = 0;
   SolveReport solve;
@@ -62,7 +64,9 @@ struct TuftShape {
   std::vector<Eigen::Vector3d> lateral_a;
   std::vector<Eigen::Vector3d> lateral_b;
   TuftSurface sections;
+  PatchesOfBrush patches;
 };
+using BrushShape = std::vector<TuftShape>;
 
 class Brush {
  public:
@@ -92,25 +96,38 @@ class Brush {
   void load(float wetness, const Concentrations& strength) { tend(LoadBrush{wetness, strength}); }
   void set_endless(bool endless);  // the tuft stays as loaded
 
-  // Straightens the tuft, as on the rim of the ink stone; keeps its ink.
+  // Straightens the hair, as on the rim of the ink stone; keeps its ink.
   void reshape();
 
   const BrushSpec& spec() const { return tuft_.spec; }
   const BrushState& state() const { return state_; }
-  // A state of a tuft with other segments is an error of the caller (std::invalid_argument).
+  // A state of a brush with other segments is an error of the caller (std::invalid_argument).
   void restore(const BrushState& state);
-  TuftShape shape() const;
+  BrushShape shape() const;
 
  private:
   double pass_time(const BrushInput& input);
+  // A tuft as it is made; what it remembers stands in the state.
+  struct Made {
+    Tuft tuft;
+    HairTexture texture;
+    PatchesOfBrush patches;
+  };
+  void grow(const std::vector<TuftRoot>& roots);
+  void make_tufts();
+  Pose<Paper, Handle> root_of(std::size_t tuft) const;
+  SolveReport advance_tufts(double step_s, bool jumped);
   void away(double elapsed_s);
-  TuftSurface marked_surface() const;
+  BrushSurface surface() const;
+  BrushSurface marked_surface() const;
+  std::vector<TuftHair> hair() const;
   void take_footprint();
   std::vector<InkLoad> draw_for(const FootprintMap& map, double elapsed_s);
 
-  Tuft tuft_;
+  Tuft tuft_;  // all the hair, as one tuft
   HairFlow flow_;
-  HairTexture texture_;
+  std::uint64_t seed_;
+  std::vector<Made> made_;  // follows the roots in state_.tufts
   std::shared_ptr<PaperGrain> grain_;
   double film_ul_mm2_ = 0;
   BrushState state_;

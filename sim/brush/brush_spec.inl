@@ -15,6 +15,12 @@ BRUSH_PARAMETER(lowest_root, "1", 0.1, 0.9, 0.2, "lowest height of the root over
 BRUSH_PARAMETER(contact_share, "1", 0.2, 0.95, 0.5, "shrunk section that the paper stops, over the full one")
 BRUSH_PARAMETER(lateral_share, "1", 0.1, 0.9, 0.7, "effective radius of a lateral node over that of its spine node")
 
+// Tufts side by side
+BRUSH_PARAMETER(spines, "count", 1, 16, 1, "tufts side by side in a wet brush: 1 a round one, more a row of them, each a slice of the breadth")
+BRUSH_PARAMETER(row_width_mm, "mm", 1, 150, 25, "breadth of the row at the ferrule; the radii of a row are half its thickness")
+BRUSH_PARAMETER(fan_rad, "rad", 0, 1.2, 0, "angle to either side by which the outermost tufts of a row lean away")
+BRUSH_PARAMETER(unruly_rad, "rad", 0, 0.6, 0, "angle to which the tufts of a row stand away at random, from the seed: a worn brush")
+
 // Springs: energy (k/m)|x|^m
 BRUSH_PARAMETER(spring_exponent, "1", 2, 3, 2, "m, of the bend, twist and stretch springs")
 BRUSH_PARAMETER(bend_stiffness, "mN mm2", 10, 1e7, 180000, "of the tuft at its root, times radians per mm of curvature")

@@ -21,7 +21,7 @@ class Writer {
     put(static_cast<std::uint64_t>(matrix.cols()));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
   }
-  void sequence(const auto& items) { put(items.size()); }
+  void sequence(const auto& items, std::size_t) { put(items.size()); }
   bool sound = true;
   std::vector<std::byte> bytes;
 
@@ -60,9 +60,10 @@ class Reader {
     matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(matrix.data()[i]);
   }
-  void sequence(auto& items) {
+  // `bytes_each`: at least so many are written of an item.
+  void sequence(auto& items, std::size_t bytes_each) {
     const std::uint64_t count = word();
-    if (count > left.size() / sizeof(items[0])) {  // no more memory than there are bytes
+    if (count > left.size() / bytes_each) {  // memory in proportion to the bytes there are
       sound = false;
       return;
     }
@@ -95,10 +96,18 @@ void pose(Archive& archive, P& p) {
   vector(archive, p.translation);
 }
 
-// Every field, in the order of the structs.
+template <class Archive, class Root>
+void tuft_root(Archive& archive, Root& root) {
+  archive(root.parent);
+  archive(root.node);
+  vector(archive, root.at);
+  vector(archive, root.lean_rad);
+  archive(root.width);
+  archive(root.hair);
+}
+
 template <class Archive, class State>
-void walk(Archive& archive, State& state) {
-  auto& tuft = state.tuft;
+void tuft_state(Archive& archive, State& tuft) {
   archive.dynamic(tuft.x);
   archive.dynamic(tuft.hessian);
   archive(tuft.hessian_step_s);
@@ -118,6 +127,17 @@ void walk(Archive& archive, State& state) {
   archive(tuft.in_contact);
   pose(archive, tuft.paper_from_handle);
   archive(tuft.placed);
+}
+
+// Every field, in the order of the structs.
+template <class Archive, class State>
+void walk(Archive& archive, State& state) {
+  archive.sequence(state.tufts, 512);
+  for (auto& tuft : state.tufts) {
+    tuft_root(archive, tuft.root);
+    tuft_state(archive, tuft.state);
+  }
+  pose(archive, state.paper_from_handle);
   const auto part = [&](auto& hair) {
     archive(hair.capacity_ul);
     archive(hair.water_ul);
@@ -127,7 +147,7 @@ void walk(Archive& archive, State& state) {
   for (auto& row : state.loading.inside) part(row);
   archive(state.loading.unspread_s);
   archive(state.loading.endless);
-  archive.sequence(state.loading.set_aside);
+  archive.sequence(state.loading.set_aside, sizeof(Withdrawal));
   for (auto& withdrawal : state.loading.set_aside)
     for (auto& patch : withdrawal) {
       archive(patch.water_ul);
@@ -148,6 +168,23 @@ std::vector<std::byte> bytes_of(const BrushState& state) {
   return std::move(writer.bytes);
 }
 
+namespace {
+
+// Each tuft hangs from the handle, or from a node between the ends of one before it that hangs there.
+bool hangs_together(const BrushState& state) {
+  if (state.tufts.empty() || state.tufts.size() > most_tufts) return false;
+  for (std::size_t i = 0; i < state.tufts.size(); ++i) {
+    const TuftRoot& root = state.tufts[i].root;
+    if (root.parent == -1) continue;
+    if (root.parent < 0 || root.parent >= static_cast<std::int64_t>(i)) return false;
+    if (state.tufts[static_cast<std::size_t>(root.parent)].root.parent != -1) return false;
+    if (root.node < 1 || root.node >= max_segments) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Result<BrushState> brush_state_of(std::span<const std::byte> bytes) {
   Reader reader(bytes);
   std::int64_t found = 0;
@@ -157,7 +194,8 @@ Result<BrushState> brush_state_of(std::span<const std::byte> bytes) {
   std::int64_t last = 0;
   reader(last);
   state.last = Timestamp(Duration(last));
-  if (!reader.sound || !reader.left.empty() || found != static_cast<std::int64_t>(signature))
+  if (!reader.sound || !reader.left.empty() || !hangs_together(state) ||
+      found != static_cast<std::int64_t>(signature))
     return failure(Fault::malformed, "these bytes are no brush state of this version");
   return state;
 }

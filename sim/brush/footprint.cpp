@@ -11,7 +11,30 @@ using Eigen::Vector2d;
 constexpr double sweep_step_mm = 0.4;
 constexpr int most_steps = 24;
 
+BrushSurface between(const BrushSurface& a, const BrushSurface& b, double t) {
+  BrushSurface mixed;
+  mixed.reserve(b.size());
+  for (std::size_t tuft = 0; tuft < b.size(); ++tuft) mixed.push_back(between(a[tuft], b[tuft], t));
+  return mixed;
+}
+
+double largest_motion_mm(const BrushSurface& a, const BrushSurface& b) {
+  double largest = 0;
+  for (std::size_t tuft = 0; tuft < b.size(); ++tuft)
+    largest = std::max(largest, largest_motion_mm(a[tuft], b[tuft]));
+  return largest;
+}
+
 }  // namespace
+
+void FootprintSweep::Instant::take(const BrushSurface& surface) {
+  contacts.resize(surface.size());
+  for (std::size_t tuft = 0; tuft < surface.size(); ++tuft) contacts[tuft].take(surface[tuft]);
+}
+
+void FootprintSweep::Instant::add_to(WindingFill& filling) const {
+  for (const ContactMesh& contact : contacts) contact.add_to(filling);
+}
 
 void FootprintSweep::come_from_nowhere() {
   last_.clear();
@@ -19,10 +42,10 @@ void FootprintSweep::come_from_nowhere() {
   settled_.reset({});
 }
 
-void FootprintSweep::come_from(const TuftSurface& surface) {
+void FootprintSweep::come_from(const BrushSurface& surface) {
   last_ = surface;
   count_ = 0;
-  append_instant().contact.take(surface);
+  append_instant().take(surface);
   settled_known_ = false;
 }
 
@@ -35,10 +58,10 @@ FootprintSweep::Instant& FootprintSweep::append_instant() {
 }
 
 void FootprintSweep::find_instants(std::span<const TimedSurface> after) {
-  const TuftSurface* last = last_.empty() ? nullptr : &last_;
+  const BrushSurface* last = last_.empty() ? nullptr : &last_;
   for (const TimedSurface& timed : after) {
     if (!last) {
-      append_instant().contact.take(timed.surface);
+      append_instant().take(timed.surface);
       last = &timed.surface;
       continue;
     }
@@ -51,7 +74,7 @@ void FootprintSweep::find_instants(std::span<const TimedSurface> after) {
       Instant& instant = append_instant();
       instant.duration_s = 0.5 * dt;
       instant.ends_step = k == steps;
-      instant.contact.take(instant.ends_step ? timed.surface
+      instant.take(instant.ends_step ? timed.surface
                                              : between(*last, timed.surface, static_cast<double>(k) / steps));
     }
     last = &timed.surface;
@@ -62,11 +85,12 @@ std::optional<CoverageFrame> FootprintSweep::frame_of_instants(double cell_mm) c
   Vector2d low = Vector2d::Constant(1e300);
   Vector2d high = -low;
   for (std::size_t i = 0; i < count_; ++i)
-    for (const ContactRing& ring : instants_[i].contact.contact().rings)
-      for (const Vector2d& p : ring.point) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-      }
+    for (const ContactMesh& mesh : instants_[i].contacts)
+      for (const ContactRing& ring : mesh.contact().rings)
+        for (const Vector2d& p : ring.point) {
+          low = low.cwiseMin(p);
+          high = high.cwiseMax(p);
+        }
   if (low.x() > high.x()) return std::nullopt;
   return frame_around(low, high, cell_mm);
 }
@@ -79,7 +103,7 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
     settled_.move_to(frame);
   } else {
     settled_.reset(frame);
-    instants_[0].contact.add_to(filling_);
+    instants_[0].add_to(filling_);
     filling_.fill(settled_);
   }
   if (!from_nowhere) settled_.add_shares(static_cast<float>(instants_[0].duration_s), map.contact_s);
@@ -89,14 +113,16 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
   for (std::size_t i = from_nowhere ? 0 : 1; i < count_; ++i) {
     const Instant& instant = instants_[i];
     now_.reset(frame);
-    instant.contact.add_to(filling_);
+    instant.add_to(filling_);
     filling_.fill(now_);
     now_.add_shares(static_cast<float>(instant.duration_s), map.contact_s);
     if (i > 0) {
-      for_each_passage(instants_[i - 1].contact, instant.contact,
-                       [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
-                         filling_.add_quad(a.at, b.at, c.at, d.at);
-                       });
+      for (std::size_t tuft = 0; tuft < instant.contacts.size(); ++tuft)
+        for_each_passage(
+            instants_[i - 1].contacts[tuft], instant.contacts[tuft],
+            [&](const MeshPoint& a, const MeshPoint& b, const MeshPoint& c, const MeshPoint& d) {
+              filling_.add_quad(a.at, b.at, c.at, d.at);
+            });
       filling_.fill(passed_);
     }
     if (!instant.ends_step) {
@@ -115,19 +141,23 @@ void FootprintSweep::find_coverage(const CoverageFrame& frame, FootprintMap& map
 void FootprintSweep::stamp(FootprintMap& map, const HairLook& look) const {
   double widest = 0;
   for (std::size_t i = 0; i < count_; ++i)
-    for (const ContactRing& ring : instants_[i].contact.contact().rings)
-      widest = std::max(widest, ring.hair.spread);
+    for (const ContactMesh& mesh : instants_[i].contacts)
+      for (const ContactRing& ring : mesh.contact().rings) widest = std::max(widest, ring.hair.spread);
   Stamp stamp(touched_.frame(), look, widest, map);
-  const auto contact = [&](std::size_t i) -> const Contact& { return instants_[i].contact.contact(); };
+  const auto add = [&](std::size_t i) {
+    for (std::size_t tuft = 0; tuft < look.tufts.size(); ++tuft)
+      stamp.add(tuft, instants_[i].contacts[tuft].contact());
+  };
   if (count_ > 2) stamp.wait_for(fresh_);
-  for (std::size_t i = 1; i < count_ && stamp.waits(); ++i) stamp.add(contact(i));
+  for (std::size_t i = 1; i < count_ && stamp.waits(); ++i) add(i);
   stamp.wait_for(touched_);
-  for (std::size_t i = count_; i-- > 0 && stamp.waits();) stamp.add(contact(i));
-  stamp.name_rest(contact(count_ - 1));
+  for (std::size_t i = count_; i-- > 0 && stamp.waits();) add(i);
+  stamp.name_rest(instants_[count_ - 1].contacts);
   if (!stamp.streaky()) return;
   stamp.wait_for_rim(fresh_);
   for (std::size_t i = 1; i < count_ && stamp.rim_waits(); ++i)
-    stamp.add_passage(instants_[i - 1].contact, instants_[i].contact);
+    for (std::size_t tuft = 0; tuft < hair.size(); ++tuft)
+      stamp.add_passage(tuft, instants_[i - 1].contacts[tuft], instants_[i].contacts[tuft]);
   stamp.finish();
 }
 

@@ -1,6 +1,6 @@
-// From the tuft's surface at a few times to the map of what it newly covered and how long it touched
-// (Chu 2.7). Between two times the surface is carried along in a straight line, in steps finer than
-// what a fast stroke would leave gaps between.
+// From the surface of a brush's tufts at a few times to the map of what they newly covered and how long they
+// touched (Chu 2.7). Between two times the surface is carried along in a straight line, in steps finer than
+// what a fast stroke would leave gaps between. What several tufts cover counts once.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,10 @@
 
 namespace fude {
 
+using BrushSurface = std::vector<TuftSurface>;  // tuft by tuft
+
 struct TimedSurface {
-  TuftSurface surface;
+  BrushSurface surface;
   double since_last_s = 0;  // from the surface before it
 };
 
@@ -26,22 +28,25 @@ struct TimedSurface {
 // come_from with the same surface it goes on with the same bits.
 class FootprintSweep {
  public:
-  // Where the tuft is to be swept from; what it covers there is not new.
-  void come_from(const TuftSurface& surface);
-  // The tuft comes from nowhere: all it covers is new, and nothing is known of the time before.
+  // Where the tufts are to be swept from; what they cover there is not new.
+  void come_from(const BrushSurface& surface);
+  // The tufts come from nowhere: all they cover is new, and nothing is known of the time before.
   void come_from_nowhere();
 
   // The footprint swept through `after`, in order, of hair that looks so; its loads are those of the patches
-  // that the map names. None where nothing touched. `cell_mm` is the same in all calls.
+  // that the map names. None where nothing touched. As many tufts as swept from; `cell_mm` is the same in
+  // all calls.
   std::optional<FootprintMap> sweep(std::span<const TimedSurface> after, double cell_mm,
                                     const HairLook& look);
 
  private:
   // A contact on the way, with the share of time it stands for.
   struct Instant {
-    ContactMesh contact;
+    std::vector<ContactMesh> contacts;  // tuft by tuft
     double duration_s = 0;
-    bool ends_step = false;  // the tuft was solved for here
+    bool ends_step = false;  // the tufts were solved for here
+    void take(const BrushSurface& surface);
+    void add_to(WindingFill& filling) const;
   };
   Instant& append_instant();
   void find_instants(std::span<const TimedSurface> after);
@@ -49,7 +54,7 @@ class FootprintSweep {
   void find_coverage(const CoverageFrame& frame, FootprintMap& map);
   void stamp(FootprintMap& map, const HairLook& look) const;
 
-  TuftSurface last_;  // empty: from nowhere
+  BrushSurface last_;  // empty: from nowhere
   bool settled_known_ = false;
   std::vector<Instant> instants_;  // the first `count_` hold; the others lend their memory
   std::size_t count_ = 0;

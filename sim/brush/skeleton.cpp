@@ -90,6 +90,22 @@ Skeleton pose_skeleton(const Tuft& tuft, const Variables& x, const Pose<Paper, H
   return s;
 }
 
+Pose<Paper, Handle> frame_above(const Tuft& tuft, const Variables& x,
+                                const Pose<Paper, Handle>& paper_from_handle, int node) {
+  const Layout layout{tuft.segments};
+  Pose<Paper, Handle> pose = paper_from_handle;
+  Matrix3d frame = pose.rotation.toRotationMatrix();
+  for (int i = 0; i < node; ++i) {
+    const auto [sine, cosine] = elementary::sine_cosine(x[layout.turn(i)]);
+    Matrix3d turned;
+    turned << cosine, -sine, 0, sine, cosine, 0, 0, 0, 1;
+    frame = Matrix3d(frame * turned * planar_bend(x[layout.bend(i)], x[layout.side_bend(i)]).rotation);
+    pose.translation -= tuft.length_mm[index(i)] * frame.col(2);
+  }
+  pose.rotation = Eigen::Quaterniond(frame).normalized();
+  return pose;
+}
+
 NodeForces::NodeForces() {
   at_node.fill(Vector3d::Zero());
   at_lateral.fill(Vector3d::Zero());

@@ -45,6 +45,10 @@ struct Skeleton {
 
 Skeleton pose_skeleton(const Tuft& tuft, const Variables& x, const Pose<Paper, Handle>& paper_from_handle);
 
+// The frame of the hair above joint `node`, at that node: a tuft that hangs there takes it for its handle.
+Pose<Paper, Handle> frame_above(const Tuft& tuft, const Variables& x,
+                                const Pose<Paper, Handle>& paper_from_handle, int node);
+
 // What pulls at the nodes: ∂E/∂node and ∂E/∂lateral.
 struct NodeForces {
   PerNode<Eigen::Vector3d> at_node;

@@ -16,12 +16,6 @@ namespace {
 constexpr int blocks_per_word = 64;
 constexpr std::size_t tip_patches = 2 * patches_around;  // the last quarter of the tuft
 
-std::uint16_t patch_of(const Hair& hair) {
-  // At the rim of a block the straight way may lead beyond the tuft.
-  const double around = std::max(static_cast<double>(hair[1]) - 1, -1.0);
-  return static_cast<std::uint16_t>(patch_at(static_cast<double>(hair[0]), around));
-}
-
 bool any(const auto& words) {
   return std::any_of(words.begin(), words.end(), [](auto bits) { return bits != 0; });
 }
@@ -39,14 +33,17 @@ std::uint64_t mask(int first, int end, int word) {
 Stamp::Stamp(const CoverageFrame& frame, const HairLook& look, double widest, FootprintMap& map)
     : frame_(frame), look_(look), map_(map) {
   map.patch.assign(map.fresh.size(), 0);
-  float driest = 1;
-  float tip = 0;
-  for (std::size_t i = 0; i < look.loads.size(); ++i) {
-    driest = std::min(driest, look.loads[i].wetness);
-    if (i + tip_patches >= look.loads.size()) tip += look.loads[i].wetness / tip_patches;
+  for (const TuftHair& tuft : look.tufts) {
+    float driest = 1;
+    float tip = 0;
+    for (std::size_t i = 0; i < tuft.patches.size(); ++i) {
+      const float wetness = look.loads[tuft.patches[i]].wetness;
+      driest = std::min(driest, wetness);
+      if (i + tip_patches >= tuft.patches.size()) tip += wetness / tip_patches;
+    }
+    streaky_ = streaky_ || tuft.texture->reach(driest, 0) < 1 || tuft.texture->opening(driest, widest) > 0;
+    split_shift_.push_back(tuft.texture->split_shift(tip));
   }
-  streaky_ = look.texture.reach(driest, 0) < 1 || look.texture.opening(driest, widest) > 0;
-  split_shift_ = look.texture.split_shift(tip);
   if (streaky_) {
     inked_.assign(map.fresh.size(), 1);
     reach_.assign(map.fresh.size(), 1);
@@ -91,7 +88,8 @@ float Stamp::wetness_at(double along, double around) const {
   const auto up = static_cast<float>(row - i);
   const auto on = static_cast<float>(column - j);
   const auto wet = [&](int y, int x) {
-    return look_.loads[static_cast<std::size_t>(y * patches_around + x % patches_around)].wetness;
+    return look_.loads[now_.patches[static_cast<std::size_t>(y * patches_around + x % patches_around)]]
+        .wetness;
   };
   const float low = wet(i, j) + on * (wet(i, j + 1) - wet(i, j));
   const float high = wet(i + 1, j) + on * (wet(i + 1, j + 1) - wet(i + 1, j));
@@ -104,13 +102,26 @@ HairCorner Stamp::corner_at(const Vector2d& at, double along, double around, con
                     Hair(static_cast<float>(along), static_cast<float>(around + 1), 1, 0)};
   if (streaky_) {
     const float wetness = wetness_at(along, around);
-    corner.hair[2] = look_.texture.reach(wetness, state.press_mn_mm);
-    corner.hair[3] = look_.texture.opening(wetness, state.spread);
+    corner.hair[2] = now_.texture->reach(wetness, state.press_mn_mm);
+    corner.hair[3] = now_.texture->opening(wetness, state.spread);
   }
   return corner;
 }
 
-void Stamp::add(const Contact& contact) {
+void Stamp::take_up(std::size_t tuft) {
+  now_ = look_.tufts[tuft];
+  now_shift_ = split_shift_[tuft];
+}
+
+std::uint16_t Stamp::patch_of(const Hair& hair) const {
+  // At the rim of a block the straight way may lead beyond the tuft.
+  const double around = std::max(static_cast<double>(hair[1]) - 1, -1.0);
+  const int own = patch_at(static_cast<double>(hair[0]), around);
+  return now_.patches[static_cast<std::size_t>(own)];
+}
+
+void Stamp::add(std::size_t tuft, const Contact& contact) {
+  take_up(tuft);
   using Ring = std::array<HairCorner, ring_points>;
   const auto corners = [&](const ContactRing& ring) {
     Ring all;
@@ -182,28 +193,31 @@ void Stamp::name_blocks(HairQuad quad) {
   }
 }
 
-Hair Stamp::hair_near(const Contact& contact, int row, int column) const {
+Hair Stamp::hair_near(std::span<const ContactMesh> contacts, int row, int column) {
   const Vector2d centre(frame_.left_mm() + (column + 0.5) * block_side * frame_.cell_mm,
                         frame_.bottom_mm() + (row + 0.5) * block_side * frame_.cell_mm);
   Hair nearest(1, 1, 0, 0);
   double least = std::numeric_limits<double>::max();
-  for (const ContactRing& ring : contact.rings)
-    for (std::size_t j = 0; j < ring_points; ++j) {
-      const double distance = (ring.point[j] - centre).squaredNorm();
-      if (distance >= least) continue;
-      least = distance;
-      nearest = corner_at(ring.point[j], ring.along, ring.around[j], ring.hair).hair;
-    }
+  take_up(0);
+  for (std::size_t tuft = 0; tuft < contacts.size(); ++tuft)
+    for (const ContactRing& ring : contacts[tuft].contact().rings)
+      for (std::size_t j = 0; j < ring_points; ++j) {
+        const double distance = (ring.point[j] - centre).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        take_up(tuft);
+        nearest = corner_at(ring.point[j], ring.along, ring.around[j], ring.hair).hair;
+      }
   return nearest;
 }
 
-void Stamp::name_rest(const Contact& contact) {
+void Stamp::name_rest(std::span<const ContactMesh> contacts) {
   for (int row = 0; row < block_rows_; ++row)
     for (std::size_t word = 0; word < block_words_; ++word)
       for (std::uint64_t bits = waiting_[static_cast<std::size_t>(row) * block_words_ + word]; bits != 0;
            bits &= bits - 1) {
         const int column = static_cast<int>(word) * blocks_per_word + std::countr_zero(bits);
-        const Hair hair = hair_near(contact, row, column);
+        const Hair hair = hair_near(contacts, row, column);
         write_block(row, column, hair, {Hair::Zero(), Hair::Zero(), hair, hair});
       }
 }
@@ -229,7 +243,7 @@ void Stamp::write_block(int row, int column, const Hair& centre, const HairSlope
 
 void Stamp::write_cell(std::size_t cell, const Hair& hair) {
   map_.patch[cell] = patch_of(hair);
-  inked_[cell] = look_.texture.inked(hair[0], hair[1], hair[2], hair[3], split_shift_);
+  inked_[cell] = now_.texture->inked(hair[0], hair[1], hair[2], hair[3], now_shift_);
   reach_[cell] = hair[2];
 }
 
@@ -240,7 +254,8 @@ void Stamp::wait_for_rim(const Coverage& cover) {
       rim_.push_back(static_cast<std::uint16_t>(cover.any(row, word) ? cover.cells(row, word) : 0));
 }
 
-void Stamp::add_passage(const ContactMesh& from, const ContactMesh& to) {
+void Stamp::add_passage(std::size_t tuft, const ContactMesh& from, const ContactMesh& to) {
+  take_up(tuft);
   const auto corner = [&](const MeshPoint& p) {
     return corner_at(p.at, p.on_tuft.x(), p.on_tuft.y(), p.hair);
   };

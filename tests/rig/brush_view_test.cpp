@@ -108,10 +108,10 @@ TEST(PosedBrush, ComesDownAndLeavesItsFootprint) {
   const auto posed = lead_to(quick_brush(), handle_pose({10, 5, 15}, 0.3, 0, 0), ink);
   ASSERT_TRUE(posed);
   EXPECT_EQ(posed->unconverged, 0);
-  EXPECT_NEAR(posed->brush.state().tuft.paper_from_handle.translation.z(), 15, 1e-9);
+  EXPECT_NEAR(posed->brush.state().paper_from_handle.translation.z(), 15, 1e-9);
   EXPECT_GT(posed->mark.area_mm2(), 10);
   // The tip lies in what it left.
-  const Eigen::Vector3d tip = posed->brush.shape().spine.back();
+  const Eigen::Vector3d tip = posed->brush.shape().front().spine.back();
   EXPECT_GT(posed->mark.at(tip.head<2>() + Eigen::Vector2d(1.5, 0)), 0.5);
   EXPECT_EQ(posed->mark.at({200, 5}), 0);
   EXPECT_FALSE(

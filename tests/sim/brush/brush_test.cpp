@@ -93,7 +93,7 @@ TEST(Brush, ReshapeStraightensAndKeepsTheInk) {
   for (int i = 0; i < 100; ++i) brush.move(input_at(0.005 * i, hand(0.005 * i)));
   const double water = wetness(brush.state().loading);
   brush.reshape();
-  EXPECT_TRUE(brush.state().tuft.x.isZero());
+  EXPECT_TRUE(brush.state().tufts.front().state.x.isZero());
   EXPECT_EQ(wetness(brush.state().loading), water);
 }
 
@@ -111,7 +111,7 @@ TEST(Brush, SurvivesWhatDevicesSend) {
     if (i % 11 == 4) input.time.host = Timestamp::max();
     if (i % 11 == 5) input.time.host = Timestamp::min();
     const BrushFrame frame = brush.move(input);
-    EXPECT_TRUE(brush.state().tuft.x.allFinite());
+    EXPECT_TRUE(brush.state().tufts.front().state.x.allFinite());
     if (!frame.deposit) continue;
     EXPECT_LT(frame.deposit->map.fresh.size(), 3'000'000U);
     for (const float f : frame.deposit->map.fresh) ASSERT_TRUE(f >= 0 && f <= 1);

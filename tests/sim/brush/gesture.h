@@ -55,7 +55,7 @@ inline Trace perform(Brush& brush, const Gesture& gesture, double rate_hz, doubl
     const double t = i / rate_hz;
     const BrushFrame frame = brush.move(input_at(start_s + t, gesture.pose(t)));
     trace.unconverged += frame.solve.converged ? 0 : 1;
-    trace.tip.push_back(brush.shape().spine.back());
+    trace.tip.push_back(brush.shape().front().spine.back());
     if (!frame.deposit) continue;
     const FootprintMap& map = frame.deposit->map;
     const double cell = map.cell_mm * map.cell_mm;
