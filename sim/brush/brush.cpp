@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/brush/row.h"
+
 namespace fude {
 namespace {
 
@@ -119,18 +121,19 @@ void Brush::away(double elapsed_s) {
   even_out(state_.loading, flow_, std::min(elapsed_s, longest_flow_s));
 }
 
-BrushSurface Brush::surface() const {
+BrushSurface Brush::surface(const std::vector<double>& row_wetness) const {
   BrushSurface surface;
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const TuftState& state = state_.tufts[i].state;
     surface.push_back(surface_of(made_[i].tuft, state.x, state.paper_from_handle));
   }
+  if (!row_wetness.empty()) join_row(tuft_.spec, row_wetness, surface);
   return surface;
 }
 
 // The tufts with the ink that clings to them, as their last footprint shows them.
 BrushSurface Brush::marked_surface() const {
-  BrushSurface marked = surface();
+  BrushSurface marked = surface(state_.footprint.wetness);
   for (std::size_t i = 0; i < marked.size(); ++i) {
     press(made_[i].tuft, state_.tufts[i].state.reactions, marked[i]);
     marked[i] = swollen(std::move(marked[i]), state_.footprint.soak_mm);
@@ -144,7 +147,21 @@ std::vector<TuftHair> Brush::hair() const {
   return hair;
 }
 
-void Brush::take_footprint() { state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading)}; }
+void Brush::take_footprint() {
+  state_.footprint = {true, tuft_.spec.soak_mm * wetness(state_.loading), row_wetness()};
+}
+
+std::vector<double> Brush::row_wetness() const {
+  if (tuft_.spec.spines == 1) return {};
+  const std::vector<InkLoad> loads = offered(state_.loading);
+  std::vector<double> row;
+  for (const Made& made : made_) {
+    double sum = 0;
+    for (const std::uint16_t patch : made.patches) sum += static_cast<double>(loads[patch].wetness);
+    row.push_back(sum / patch_count);
+  }
+  return row;
+}
 
 // The seconds since the last input.
 double Brush::pass_time(const BrushInput& input) {
@@ -155,6 +172,23 @@ double Brush::pass_time(const BrushInput& input) {
   return elapsed_s;
 }
 
+// What of the brush is below the level: of each patch the share that its tufts tell on the average.
+Immersion Brush::immersed(const BrushSurface& hair, double level_mm) const {
+  Immersion brush;
+  PerPatch tellers{};
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const Immersion tuft = immersed_below(hair[i], level_mm);
+    for (std::size_t k = 0; k < patch_count; ++k) {
+      brush.patches[made_[i].patches[k]] += tuft.patches[k];
+      ++tellers[made_[i].patches[k]];
+    }
+    for (std::size_t row = 0; row < tuft.inside.size(); ++row)
+      brush.inside[row] += tuft.inside[row] / static_cast<double>(made_.size());
+  }
+  for (std::size_t k = 0; k < patch_count; ++k) brush.patches[k] /= std::max(1.0, tellers[k]);
+  return brush;
+}
+
 void Brush::visit(const BrushInput& input, const PaletteSpot& spot) {
   const double elapsed_s = pass_time(input);
   if (input.origin == PoseOrigin::none || !finite(input.paper_from_handle)) return away(elapsed_s);
@@ -162,15 +196,18 @@ void Brush::visit(const BrushInput& input, const PaletteSpot& spot) {
   Pose<Paper, Handle> raised = input.paper_from_handle;
   raised.rotation.normalize();
   raised.translation.z() = out_of_reach_mm;
-  advance(tuft_, state_.tuft, raised, elapsed_s, true);
+  state_.paper_from_handle = raised;
+  advance_tufts(elapsed_s, true);
   state_.footprint = {};
   sweep_.come_from_nowhere();
-  const TuftSurface hair = surface_of(tuft_, state_.tuft.x, raised);
-  const double lowest = std::ranges::min(hair, {}, [](const Station& s) { return s.centre.z(); }).centre.z();
+  const BrushSurface hair = surface(row_wetness());
+  double lowest = out_of_reach_mm;
+  for (const TuftSurface& tuft : hair)
+    for (const Station& s : tuft) lowest = std::min(lowest, s.centre.z());
   double level = out_of_reach_mm - input.paper_from_handle.translation.z();
   if (const auto* bath = std::get_if<Bath>(&spot)) level = std::min(level, lowest + bath->depth_mm);
   const bool stays = !input.after_gap && elapsed_s <= gap_s;
-  stay_at(state_.loading, tuft_, flow_, spot, immersed_below(hair, level), stays ? elapsed_s : 0);
+  stay_at(state_.loading, tuft_, flow_, spot, immersed(hair, level), stays ? elapsed_s : 0);
   if (std::holds_alternative<Rim>(spot) && level > lowest) reshape();
 }
 
@@ -261,7 +298,7 @@ void Brush::restore(const BrushState& state) {
 }
 
 BrushShape Brush::shape() const {
-  BrushSurface surfaces = surface();
+  BrushSurface surfaces = surface(row_wetness());
   BrushShape shape;
   for (std::size_t i = 0; i < made_.size(); ++i) {
     shape.push_back(shape_of(made_[i].tuft, state_.tufts[i].state, std::move(surfaces[i])));

@@ -32,7 +32,8 @@ namespace fude {
 // The footprint that the next is swept from: of the tufts as they stand.
 struct Footprint {
   bool taken = false;
-  double soak_mm = 0;  // by which the tufts were swollen
+  double soak_mm = 0;           // by which the tufts were swollen
+  std::vector<double> wetness;  // of each tuft, where they hang together in a row
 };
 
 // All that a brush remembers; copying it is a snapshot.
@@ -107,6 +108,7 @@ class Brush {
 
  private:
   double pass_time(const BrushInput& input);
+  Immersion immersed(const BrushSurface& hair, double level_mm) const;
   // A tuft as it is made; what it remembers stands in the state.
   struct Made {
     Tuft tuft;
@@ -118,8 +120,9 @@ class Brush {
   Pose<Paper, Handle> root_of(std::size_t tuft) const;
   SolveReport advance_tufts(double step_s, bool jumped);
   void away(double elapsed_s);
-  BrushSurface surface() const;
+  BrushSurface surface(const std::vector<double>& row_wetness) const;
   BrushSurface marked_surface() const;
+  std::vector<double> row_wetness() const;
   std::vector<TuftHair> hair() const;
   void take_footprint();
   std::vector<InkLoad> draw_for(const FootprintMap& map, double elapsed_s);

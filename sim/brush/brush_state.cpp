@@ -155,6 +155,8 @@ void walk(Archive& archive, State& state) {
     }
   archive(state.footprint.taken);
   archive(state.footprint.soak_mm);
+  archive.sequence(state.footprint.wetness, sizeof(double));
+  for (auto& wet : state.footprint.wetness) archive(wet);
   archive(state.timed);
 }
 
@@ -173,6 +175,8 @@ namespace {
 // Each tuft hangs from the handle, or from a node between the ends of one before it that hangs there.
 bool hangs_together(const BrushState& state) {
   if (state.tufts.empty() || state.tufts.size() > most_tufts) return false;
+  const std::size_t row = state.footprint.wetness.size();
+  if (row != 0 && row != state.tufts.size()) return false;
   for (std::size_t i = 0; i < state.tufts.size(); ++i) {
     const TuftRoot& root = state.tufts[i].root;
     if (root.parent == -1) continue;

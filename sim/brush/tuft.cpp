@@ -39,7 +39,8 @@ Tuft make_tuft(const BrushSpec& spec) {
     const double thinning = elementary::power(hanging_mm / spec.tuft_length_mm, spec.stiffness_fall);
     hanging_mm -= tuft.length_mm[i];
     tuft.bend_stiffness[i] = spec.bend_stiffness * thinning / span;
-    tuft.twist_stiffness[i] = i == 0 ? 0 : spec.twist_ratio * tuft.bend_stiffness[i];
+    const bool free = i == 0 && spec.spines == 1;  // a row keeps to its breadth
+    tuft.twist_stiffness[i] = free ? 0 : spec.twist_ratio * tuft.bend_stiffness[i];
   }
   for (std::size_t k = 1; k < n; ++k)
     tuft.stretch_stiffness[k] =

@@ -21,7 +21,7 @@ struct Tuft {
   PerSegment<double> length_mm{};        // progressively shorter towards the tip
   PerNode<double> radius_mm{};           // initial tuft radius
   PerSegment<double> bend_stiffness{};   // mN·mm, of the joint's bend spring
-  PerSegment<double> twist_stiffness{};  // mN·mm; 0 at the root
+  PerSegment<double> twist_stiffness{};  // mN·mm; 0 at the root of a round tuft
   PerNode<double> stretch_stiffness{};   // mN/mm, of each lateral node's spring
   double contact_share = 0;              // Φ over Ω; 0 where only the spine is stopped
 };

@@ -218,7 +218,7 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
     touches = touches || skeleton.node[index(k)].z() < state.minor_mm[index(k)];
     presses = presses || skeleton.node[index(k)].z() < tuft.contact_share * state.minor_mm[index(k)];
   }
-  if (touches && !state.in_contact) {
+  if (touches && !state.in_contact && tuft.spec.spines == 1) {
     level_lateral_lines(tuft, state, skeleton, motion);
     skeleton = pose_skeleton(tuft, state.x, pose);
   }

@@ -36,10 +36,12 @@ Cubic cubic_hermite(double t) {
 // The point of the section at angle `around`: 0 and π on the lateral line, π/2 at the bottom.
 Vector3d section_point(const Station& s, double around) {
   const auto [sine, cosine] = elementary::sine_cosine(around);
-  return s.centre + (cosine > 0 ? s.major_a : s.major_b) * cosine * s.lateral + s.minor * sine * s.down;
+  const double across = s.squared ? std::copysign(elementary::square_root(std::abs(cosine)), cosine) : cosine;
+  return s.centre + (cosine > 0 ? s.major_a : s.major_b) * across * s.lateral + s.minor * sine * s.down;
 }
 
-// Angles between which the section is under the paper: z(α) = z_O − R cos(α − δ) on either half.
+// Angles between which the section is under the paper: z(α) = z_O − R cos(α − δ) on either half. A squared
+// section is cut at the angles of the elliptic one: the same while it lies level.
 struct SubmergedArc {
   double from = std::numeric_limits<double>::infinity();
   double to = -std::numeric_limits<double>::infinity();
@@ -160,21 +162,25 @@ void append_between(const SubmergedStation& a, const SubmergedStation& b, std::v
   if (arc_a < alike * arc_b) narrow(b, a);
 }
 
-// A steep tip touches with its point alone, which no section's plane shows.
+// A steep tip touches with its point alone, or a slice with its edge, which no section's plane shows.
 void append_tip(const Station& tip, int station, Contact& contact) {
   const double r = tip.minor;
   const double height = tip.centre.z();
   if (height >= r) return;
   const double radius = elementary::square_root(r * r - height * height * (height > 0 ? 1 : 0));
+  Vector2d across(1, 0);
+  if (tip.squared) across = tip.lateral.head<2>();
+  const Vector2d through(-across.y(), across.x());
   for (int i = -2; i <= 2; ++i) {
     const double y = radius * i / 2;
-    const double half = elementary::square_root(std::max(0.0, radius * radius - y * y));
+    const double round = elementary::square_root(std::max(0.0, radius * radius - y * y));
     ContactRing ring;
     ring.place = places_per_station * (station + 1) + i;
     ring.along = 1;
     ring.hair = {tip.press_mn_mm, 0};
     for (int j = 0; j < ring_points; ++j) {
-      ring.point[index(j)] = tip.centre.head<2>() + Vector2d(half * (j - 2) / 2, y);
+      const double half = !tip.squared ? round : j > 2 ? tip.major_a : tip.major_b;
+      ring.point[index(j)] = tip.centre.head<2>() + half * (j - 2) / 2 * across + y * through;
       ring.around[index(j)] = 0.25;
     }
     contact.rings.push_back(ring);

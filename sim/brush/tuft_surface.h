@@ -26,6 +26,7 @@ struct Station {
   double major_b = 0;
   double minor = 0;
   double press_mn_mm = 0;  // of the paper against it, along the tuft
+  bool squared = false;    // x = a sgn(cos t) √|cos t|, of a slice of a flat brush (Chu 2.8, put right)
   bool flipped = false;    // `down` is the far side of the hair: the texture runs the other way round
 };
 

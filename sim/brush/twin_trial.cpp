@@ -50,8 +50,12 @@ TwinMark perform(const BrushSpec& spec, std::span<const HandMoment> hand, double
     const BrushFrame frame = brush.move(input);
     if (frame.deposit) made.mark.add(frame.deposit->map);
     if (!frame.solve.converged) ++made.unconverged;
-    const Multipliers& reactions = brush.state().tuft.reactions;
-    made.force_mn.push_back(reactions.head(reactions.size() - 1).sum());  // the last is the blocking plane's
+    double force_mn = 0;
+    for (const BrushTuft& tuft : brush.state().tufts) {
+      const Multipliers& reactions = tuft.state.reactions;
+      force_mn += reactions.head(reactions.size() - 1).sum();  // the last is the blocking plane's
+    }
+    made.force_mn.push_back(force_mn);
   }
   return made;
 }
