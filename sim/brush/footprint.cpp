@@ -156,7 +156,7 @@ void FootprintSweep::stamp(FootprintMap& map, const HairLook& look) const {
   if (!stamp.streaky()) return;
   stamp.wait_for_rim(fresh_);
   for (std::size_t i = 1; i < count_ && stamp.rim_waits(); ++i)
-    for (std::size_t tuft = 0; tuft < hair.size(); ++tuft)
+    for (std::size_t tuft = 0; tuft < look.tufts.size(); ++tuft)
       stamp.add_passage(tuft, instants_[i - 1].contacts[tuft], instants_[i].contacts[tuft]);
   stamp.finish();
 }

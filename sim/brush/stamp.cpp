@@ -285,6 +285,7 @@ void Stamp::write_cells(const HairQuad& quad) {
 }
 
 void Stamp::take_off_hollows() {
+  const HairTexture& hair = *look_.tufts[0].texture;  // all tufts of a brush meet the paper alike
   std::vector<float> heights;
   for (int row = 0; row < frame_.rows; ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.columns);
@@ -302,13 +303,13 @@ void Stamp::take_off_hollows() {
                          frame_.bottom_mm() + (row + 0.5) * frame_.cell_mm, frame_.cell_mm, heights);
     for (std::size_t k = 0; k < heights.size(); ++k) {
       const std::size_t i = begin + static_cast<std::size_t>(first) + k;
-      inked_[i] *= HairTexture::grained(look_.texture.hills(reach_[i]), heights[k]);
+      inked_[i] *= HairTexture::grained(hair.hills(reach_[i]), heights[k]);
     }
   }
 }
 
 void Stamp::finish() {
-  if (look_.grain && look_.texture.grained()) take_off_hollows();
+  if (look_.grain && look_.tufts[0].texture->grained()) take_off_hollows();
   for (std::size_t i = 0; i < inked_.size(); ++i) {
     map_.fresh[i] *= inked_[i];
     map_.contact_s[i] *= inked_[i];
