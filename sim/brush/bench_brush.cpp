@@ -37,22 +37,25 @@ BrushBench::Times times_of(std::vector<double> us) {
 }
 
 BrushBench bench_brush(const BrushSpec& spec, const BenchGesture& gesture, int tufts, int runs) {
-  const Tuft tuft = make_tuft(spec);
+  std::vector<TuftRoot> roots = arrangement(spec, 1);
+  if (roots.size() == 1) {
+    roots.resize(static_cast<std::size_t>(tufts));
+    for (std::size_t t = 0; t < roots.size(); ++t)
+      roots[t].at.x() = row_step_mm * static_cast<double>(t) / spec.root_radius_mm;
+  }
+  const Tuft tuft = make_tuft(hair_of(spec, roots.front()));  // all alike
   std::vector<double> solve_us(frames, std::numeric_limits<double>::infinity());
   std::vector<double> iterations;
   BrushBench bench;
   bench.frames = frames;
   for (int run = 0; run < runs; ++run) {
-    std::vector<TuftState> states(static_cast<std::size_t>(tufts), rest_state(tuft));
+    std::vector<TuftState> states(roots.size(), rest_state(tuft));
     for (int f = 0; f < frames; ++f) {
       const Pose<Paper, Handle> pose = gesture.pose(spec, f * frame_s);
       std::vector<SolveReport> reports(states.size());
       const double us = microseconds([&] {
-        for (std::size_t t = 0; t < states.size(); ++t) {
-          Pose<Paper, Handle> root = pose;
-          root.translation += pose.rotation * Eigen::Vector3d(row_step_mm * static_cast<double>(t), 0, 0);
-          reports[t] = advance(tuft, states[t], root, frame_s, f == 0);
-        }
+        for (std::size_t t = 0; t < states.size(); ++t)
+          reports[t] = advance(tuft, states[t], root_pose(spec, roots[t], pose), frame_s, f == 0);
       });
       solve_us[static_cast<std::size_t>(f)] = std::min(solve_us[static_cast<std::size_t>(f)], us);
       if (run > 0) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "tests/sim/brush/gesture.h"
@@ -13,8 +14,13 @@ namespace {
 
 BrushSpec shipped(const std::string& name) {
   const auto spec = read_brush_spec(std::string(FUDE_BRUSHES) + "/" + name + ".toml");
-  if (!spec) ADD_FAILURE() << spec.error().message;
-  return spec ? *spec : BrushSpec{};
+  if (!spec) {
+    ADD_FAILURE() << spec.error().message;
+    return {};
+  }
+  BrushSpec coarse = *spec;
+  coarse.cell_mm = 0.2;
+  return coarse;
 }
 
 Brush wet(const BrushSpec& spec, float wetness = 1) {
@@ -28,8 +34,8 @@ Brush wet(const BrushSpec& spec, float wetness = 1) {
 using Painted = std::map<std::pair<int, int>, float>;
 Painted paint(Brush& brush, const Gesture& gesture) {
   Painted painted;
-  for (int i = 0; i <= static_cast<int>(gesture.seconds * 200); ++i) {
-    const BrushFrame frame = brush.move(input_at(i / 200.0, gesture.pose(i / 200.0)));
+  for (int i = 0; i <= static_cast<int>(gesture.seconds * 100); ++i) {
+    const BrushFrame frame = brush.move(input_at(i / 100.0, gesture.pose(i / 100.0)));
     EXPECT_LT(frame.solve.violation_mm, 1e-6 * 25);
     if (!frame.deposit) continue;
     const FootprintMap& map = frame.deposit->map;
@@ -68,7 +74,7 @@ Gesture drawn(double length_mm, double low, bool along_y) {
   return {1.2, [=](double t) {
             const double way = 40 * ease((t - 0.15) / 0.9);
             const double z = length_mm * (1.1 - (1.1 - low) * ease(t / 0.15) + 0.4 * ease((t - 1.0) / 0.2));
-            return along_y ? leaning(0, way, z, 0.35, 1.5708) : leaning(way, 0, z, 0.2, 0);
+            return along_y ? leaning(0, way, z, 0.35, std::numbers::pi / 2) : leaning(way, 0, z, 0.2, 0);
           }};
 }
 
@@ -81,7 +87,7 @@ TEST(FlatBrush, DrawnBroadsideItCoversItsBreadthAndEdgewiseALine) {
   EXPECT_NEAR(wide.mm, spec.row_width_mm, 2);
   EXPECT_GT(wide.covered_mm, 0.97 * wide.mm);
   Brush edge = wet(spec);
-  const Width thin = width_at(paint(edge, drawn(spec.tuft_length_mm, 0.9, false)), 20, false, spec.cell_mm);
+  const Width thin = width_at(paint(edge, drawn(spec.tuft_length_mm, 0.985, false)), 20, false, spec.cell_mm);
   std::printf("figure: drawn edgewise %.1f mm\n", thin.mm);
   EXPECT_GT(thin.mm, 0.2);
   EXPECT_LT(thin.mm, 0.25 * wide.mm);
@@ -111,6 +117,7 @@ TEST(FlatBrush, AFanLeavesSeparateStreaks) {
 
 TEST(FlatBrush, TwoTuftsOverOneAnotherCountOnce) {
   BrushSpec spec;
+  spec.cell_mm = 0.2;
   spec.row_width_mm = 1;
   spec.spines = 2;
   spec.spread = false;
