@@ -85,9 +85,8 @@ void Brush::grow(const std::vector<TuftRoot>& roots) {
 void Brush::make_tufts() {
   made_.clear();
   for (const BrushTuft& one : state_.tufts) {
-    const BrushSpec& from = one.root.parent < 0
-                                ? tuft_.spec
-                                : made_[static_cast<std::size_t>(one.root.parent)].tuft.spec;
+    const BrushSpec& from =
+        one.root.parent < 0 ? tuft_.spec : made_[static_cast<std::size_t>(one.root.parent)].tuft.spec;
     const BrushSpec spec = hair_of(from, one.root);
     const std::uint64_t seed = seed_ + made_.size();
     made_.push_back({make_tuft(spec), HairTexture(spec, seed), patches_of(tuft_.spec, one.root)});
@@ -101,15 +100,38 @@ Pose<Paper, Handle> Brush::root_of(std::size_t tuft) const {
   return root_pose(made_[parent].tuft, state_.tufts[parent].state, root);
 }
 
-// Each tuft in its turn: a child's root moves with its parent (Chu 2.5.7).
+// Of each tuft in a row, how its neighbours bend, on the average.
+std::vector<Bends> Brush::neighbours() const {
+  if (tuft_.spec.spines == 1) return {};
+  std::vector<Bends> bends;
+  for (std::size_t i = 0; i < made_.size(); ++i)
+    bends.push_back(bends_of(made_[i].tuft, state_.tufts[i].state));
+  std::vector<Bends> beside = bends;
+  const std::size_t last = bends.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i)
+    for (std::size_t joint = 0; joint < beside[i].size(); ++joint)
+      beside[i][joint] = 0.5 * (bends[i > 0 ? i - 1 : 1][joint] + bends[i < last ? i + 1 : last - 1][joint]);
+  return beside;
+}
+
+// Each tuft in its turn: a child's root moves with its parent (Chu 2.5.7). All of them pull at one hand.
 SolveReport Brush::advance_tufts(double step_s, bool jumped) {
   SolveReport all;
   double energy = 0;
+  Wrench on_hand;
+  const std::vector<Bends> beside = neighbours();
   for (std::size_t i = 0; i < made_.size(); ++i) {
-    take_worse(all, advance(made_[i].tuft, state_.tufts[i].state, root_of(i), step_s, jumped));
-    energy += all.energy_mn_mm;
+    const SolveReport one = advance(made_[i].tuft, state_.tufts[i].state, root_of(i), step_s, jumped, nullptr,
+                                    beside.empty() ? nullptr : &beside[i]);
+    take_worse(all, one);
+    energy += one.energy_mn_mm;
+    const Eigen::Vector3d lever =
+        state_.tufts[i].state.paper_from_handle.translation - state_.paper_from_handle.translation;
+    on_hand.force_n += one.on_hand.force_n;
+    on_hand.torque_nmm += one.on_hand.torque_nmm + lever.cross(one.on_hand.force_n);
   }
   all.energy_mn_mm = energy;
+  all.on_hand = on_hand;
   return all;
 }
 
@@ -232,8 +254,7 @@ BrushFrame Brush::move(const BrushInput& input) {
   const double step_s = elapsed_s / frame.steps;
   std::vector<TimedSurface> after;
   for (int k = 1; k <= frame.steps; ++k) {
-    state_.paper_from_handle =
-        jumped ? target : between(start, target, static_cast<double>(k) / frame.steps);
+    state_.paper_from_handle = jumped ? target : between(start, target, static_cast<double>(k) / frame.steps);
     take_worse(frame.solve, advance_tufts(step_s, jumped));
     take_footprint();
     after.push_back({marked_surface(), step_s});

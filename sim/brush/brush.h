@@ -118,6 +118,7 @@ class Brush {
   void grow(const std::vector<TuftRoot>& roots);
   void make_tufts();
   Pose<Paper, Handle> root_of(std::size_t tuft) const;
+  std::vector<Bends> neighbours() const;
   SolveReport advance_tufts(double step_s, bool jumped);
   void away(double elapsed_s);
   BrushSurface surface(const std::vector<double>& row_wetness) const;

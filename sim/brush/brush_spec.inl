@@ -18,6 +18,7 @@ BRUSH_PARAMETER(lateral_share, "1", 0.1, 0.9, 0.7, "effective radius of a latera
 // Tufts side by side
 BRUSH_PARAMETER(spines, "count", 1, 16, 1, "tufts side by side in a wet brush: 1 a round one, more a row of them, each a slice of the breadth")
 BRUSH_PARAMETER(row_width_mm, "mm", 1, 150, 25, "breadth of the row at the ferrule; the radii of a row are half its thickness")
+BRUSH_PARAMETER(row_coherence, "1", 0, 20, 3, "stiffness with which the tufts of a row bend as their neighbours do, over that of bending")
 BRUSH_PARAMETER(fan_rad, "rad", 0, 1.2, 0, "angle to either side by which the outermost tufts of a row lean away")
 BRUSH_PARAMETER(unruly_rad, "rad", 0, 0.6, 0, "angle to which the tufts of a row stand away at random, from the seed: a worn brush")
 

@@ -41,6 +41,7 @@ Tuft make_tuft(const BrushSpec& spec) {
     tuft.bend_stiffness[i] = spec.bend_stiffness * thinning / span;
     const bool free = i == 0 && spec.spines == 1;  // a row keeps to its breadth
     tuft.twist_stiffness[i] = free ? 0 : spec.twist_ratio * tuft.bend_stiffness[i];
+    if (spec.spines > 1) tuft.bend_stiffness[i] *= 1 + spec.row_coherence;
   }
   for (std::size_t k = 1; k < n; ++k)
     tuft.stretch_stiffness[k] =

@@ -18,9 +18,9 @@ using PerNode = std::array<T, max_segments + 1>;
 struct Tuft {
   BrushSpec spec;
   int segments = 0;
-  PerSegment<double> length_mm{};        // progressively shorter towards the tip
-  PerNode<double> radius_mm{};           // initial tuft radius
-  PerSegment<double> bend_stiffness{};   // mN·mm, of the joint's bend spring
+  PerSegment<double> length_mm{};       // progressively shorter towards the tip
+  PerNode<double> radius_mm{};          // initial tuft radius
+  PerSegment<double> bend_stiffness{};  // mN·mm, of the joint's bend spring and that towards its neighbours'
   PerSegment<double> twist_stiffness{};  // mN·mm; 0 at the root of a round tuft
   PerNode<double> stretch_stiffness{};   // mN/mm, of each lateral node's spring
   double contact_share = 0;              // Φ over Ω; 0 where only the spine is stopped

@@ -205,7 +205,17 @@ Pose<Paper, Handle> reachable_pose(const Tuft& tuft, Pose<Paper, Handle> pose) {
   return pose;
 }
 
-FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle>& pose, double step_s) {
+Bends bends_of(const Tuft& tuft, const TuftState& state) {
+  const Layout layout{tuft.segments};
+  Bends bends;
+  bends.fill(Vector2d::Zero());
+  for (int i = 0; i < tuft.segments; ++i)
+    bends[index(i)] = {state.x[layout.bend(i)], state.x[layout.side_bend(i)]};
+  return bends;
+}
+
+FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle>& pose, double step_s,
+                       const Bends* beside) {
   FrozenStep frozen;
   frozen.paper_from_handle = pose;
   frozen.step_s = step_s;
@@ -230,6 +240,13 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
   state.x[Layout{tuft.segments}.yielding()] = 0;
   frozen.before = state.x;
   frozen.set_rad = state.set_rad;
+  if (tuft.spec.spines > 1) {
+    // Two quadratic springs on one joint are one, stiffer, to a place between them.
+    const double w = tuft.spec.row_coherence;
+    const Bends neighbours = beside ? *beside : bends_of(tuft, state);
+    for (int i = 0; i < tuft.segments; ++i)
+      frozen.set_rad[index(i)] = (state.set_rad[index(i)] + w * neighbours[index(i)]) / (1 + w);
+  }
   frozen.submerged = state.submerged;
   frozen.plane = state.plane;
   for (int k = 0; k <= tuft.segments; ++k)
@@ -239,12 +256,12 @@ FrozenStep freeze_step(const Tuft& tuft, TuftState& state, const Pose<Paper, Han
 }
 
 SolveReport advance(const Tuft& tuft, TuftState& state, const Pose<Paper, Handle>& paper_from_handle,
-                    double step_s, bool jumped, ContactModel* model) {
+                    double step_s, bool jumped, ContactModel* model, const Bends* beside) {
   step_s = std::clamp(step_s, shortest_step_s, longest_step_s);
   if (jumped) let_go(state);
   const bool was_in_contact = state.in_contact;
   const Pose<Paper, Handle> pose = reachable_pose(tuft, paper_from_handle);
-  const FrozenStep frozen = freeze_step(tuft, state, pose, step_s);
+  const FrozenStep frozen = freeze_step(tuft, state, pose, step_s, beside);
   const TuftProgram program(tuft, frozen);
   const SquareMatrix fresh = program.spring_hessian();
   if (!was_in_contact || state.hessian.rows() != fresh.rows()) {

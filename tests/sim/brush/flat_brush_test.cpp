@@ -19,7 +19,7 @@ BrushSpec shipped(const std::string& name) {
     return {};
   }
   BrushSpec coarse = *spec;
-  coarse.cell_mm = 0.2;
+  coarse.cell_mm = 0.1;
   return coarse;
 }
 

@@ -119,14 +119,14 @@ TEST(SolverRobustness, AnyPoseIsSurvived) {
 TEST(SolverRobustness, APoseThatIsNoNumberIsRefused) {
   Brush brush(BrushSpec{}, 1);
   brush.move(input_at(0, leaning(0, 0, 24, 0.2, 0)));
-  const Pose<Paper, Handle> good = brush.state().tuft.paper_from_handle;
+  const Pose<Paper, Handle> good = brush.state().paper_from_handle;
   Pose<Paper, Handle> bad = good;
   bad.translation.x() = std::numeric_limits<double>::quiet_NaN();
   const BrushFrame frame = brush.move(input_at(0.004, bad));
   EXPECT_FALSE(frame.deposit);
   EXPECT_EQ(frame.solve.on_hand.force_n.norm(), 0);
   EXPECT_TRUE(brush.move(input_at(0.008, good)).solve.converged);
-  EXPECT_TRUE(brush.shape().spine.back().allFinite());
+  EXPECT_TRUE(brush.shape().front().spine.back().allFinite());
 }
 
 }  // namespace
