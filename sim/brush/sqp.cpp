@@ -111,28 +111,33 @@ SqpResult minimise_free(const Program& program, Variables& x, SquareMatrix& hess
     slope = std::min(slope, -0.5 * step.d.dot(curved));
 
     Variables moved = step.d;
-    double length = 1;
     program.evaluate(x + moved, next);
     // Rounding decides where the decrease is lost in the last digits.
     const double noise = 1e-13 * (std::abs(start) + program.small_energy);
-    if (merit(next, penalty) > start + sufficient_decrease * slope + noise) {
+    const auto falls_short = [&](double reached, double length) {
+      return reached > start + sufficient_decrease * length * slope + noise;
+    };
+    double reached = merit(next, penalty);
+    if (falls_short(reached, 1)) {
+      // Constraints curve away from the step; the correction bends the search along them (Mayne & Polak
+      // 1982). Straight on, a sliding joint would be cut to the same small step again and again.
       const Multipliers corrected = next.constraints - at.jacobian * step.d;
       const QuadraticSolution second = step_from(program, x, at, curvature.inverse_factor, corrected);
+      Variables bend = Variables::Zero(moved.size());
       if (second.outcome == QuadraticOutcome::solved && second.d.squaredNorm() < 4 * step.d.squaredNorm()) {
-        program.evaluate(x + second.d, next);
-        if (merit(next, penalty) <= start + sufficient_decrease * slope + noise) moved = second.d;
-      }
-      if (moved == step.d) {
-        for (int cut = 0; cut < 12; ++cut) {
-          program.evaluate(x + length * step.d, next);
-          const double reached = merit(next, penalty);
-          if (reached <= start + sufficient_decrease * length * slope + noise) break;
-          // Minimum of the parabola through value, slope and what was reached.
-          const double guess = -0.5 * slope * length / ((reached - start) / length - slope);
-          length *= std::clamp(guess > 0 ? guess / length : 0.5, 0.1, 0.6);
-        }
-        moved = length * step.d;
+        bend = second.d - step.d;
+        moved = second.d;
         program.evaluate(x + moved, next);
+        reached = merit(next, penalty);
+      }
+      double length = 1;
+      for (int cut = 0; cut < 12 && falls_short(reached, length); ++cut) {
+        // Minimum of the parabola through value, slope and what was reached.
+        const double guess = -0.5 * slope * length / ((reached - start) / length - slope);
+        length *= std::clamp(guess > 0 ? guess / length : 0.5, 0.1, 0.6);
+        moved = length * step.d + length * length * bend;
+        program.evaluate(x + moved, next);
+        reached = merit(next, penalty);
       }
     }
     const Variables change =
