@@ -50,6 +50,7 @@ std::optional<Timestamp> Fusion::on_one_clock(Source& source, Timestamp stamped)
   late = {};
   ++taken_;
   if (std::chrono::abs(delay()) <= kept_) source.usual_delay += (delay() - source.usual_delay) / 16;
+  last_shift_ = source.shift;
   return stamped + source.shift;
 }
 

@@ -45,6 +45,8 @@ class Fusion {
   const MotionFilter& filter() const { return now_; }
   const FusionCounts& counts() const { return now_.counts(); }
   const LatenessCounts& lateness() const { return lateness_; }
+  // Added to the times of the source that was last heard, to put it back where it was among the others.
+  Duration last_shift() const { return last_shift_; }
 
  private:
   struct StampedFix {
@@ -90,6 +92,7 @@ class Fusion {
   LeapWatch leap_watch_;
   std::array<Source, 1 + std::variant_size_v<Fix>> sources_;  // the inertial unit first
   std::uint64_t taken_ = 0;                                   // of all sources
+  Duration last_shift_{};
   Eigen::Vector3d withheld_m_ = Eigen::Vector3d::Zero();      // of the corrections, not yet shown
 };
 

@@ -1,6 +1,10 @@
 #include "rig/fusion/fuse_session.h"
 
 #include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <variant>
 
 #include "calibration/fusion/smoother.h"
 #include "rig/fusion/fix_of.h"
@@ -31,16 +35,23 @@ std::pair<Eigen::Vector3d, std::string> up_of(const std::vector<UsableSample>& s
   return {turned(Eigen::Vector3d::UnitZ()), "up is taken for the tracker's z; say otherwise with --up"};
 }
 
+// What was fused from one beginning to the next: where all clocks step back, the fusion begins again.
+struct Run {
+  std::size_t first_row = 0;
+  std::vector<FusionInput> inputs;
+};
+
 // Without a place there is nothing to smooth towards, so rows that the smoother leaves out stay causal.
-void take_smoothed(std::vector<FusedRow>& rows, const std::vector<Timestamp>& times,
+void take_smoothed(std::span<FusedRow> rows, std::span<const std::optional<Timestamp>> times,
                    std::vector<FusionInput> inputs, const FusionSettings& settings) {
   std::stable_sort(inputs.begin(), inputs.end(),
                    [](const FusionInput& a, const FusionInput& b) { return a.time < b.time; });
   const std::vector<FusedPose> smoothed = smooth(inputs, settings);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto pose = std::lower_bound(smoothed.begin(), smoothed.end(), times[i],
+    if (!times[i]) continue;
+    const auto pose = std::lower_bound(smoothed.begin(), smoothed.end(), *times[i],
                                        [](const FusedPose& p, Timestamp time) { return p.time < time; });
-    if (pose != smoothed.end() && pose->time == times[i]) rows[i] = row_of(*pose, rows[i].time);
+    if (pose != smoothed.end() && pose->time == *times[i]) rows[i] = row_of(*pose, rows[i].time);
   }
 }
 
@@ -58,25 +69,39 @@ FusedSession fuse(const std::vector<UsableSample>& samples, const std::set<FuseS
                        .tracker_in_time = !calibration.delays.empty(),
                        .north_is_y = earth && use.contains(FuseSource::mag)});
   Fusion fusion(settings, usual_memory + calibration.longest_delay());
-  std::vector<FusionInput> inputs;
-  std::vector<Timestamp> times;
+  std::vector<Run> runs(1);
+  std::vector<std::optional<Timestamp>>
+      times;  // of the rows, on the clock of all; none: the sample was dropped
   for (const UsableSample& sample : samples) {
-    if (const auto* imu = std::get_if<ImuSample>(&sample.what)) {
+    const std::uint64_t restarts = fusion.lateness().restarts;
+    const auto* imu = std::get_if<ImuSample>(&sample.what);
+    bool taken = false;
+    std::variant<InertialReading, Fix> what;
+    if (imu != nullptr) {
       const InertialReading reading = reading_of(*imu, use);
-      if (imu->valid && fusion.add(reading, sample.time) && wish.smooth)
-        inputs.push_back({sample.time, reading});
+      taken = imu->valid && fusion.add(reading, sample.time);
+      what = reading;
     } else {
       const Fix& fix = std::get<Fix>(sample.what);
-      const FixOutcome outcome = fusion.add(fix, sample.time).outcome;
-      if (outcome != FixOutcome::too_late && wish.smooth) inputs.push_back({sample.time, fix});
-      if (inertial) continue;
+      taken = fusion.add(fix, sample.time).outcome != FixOutcome::too_late;
+      what = fix;
     }
+    if (fusion.lateness().restarts > restarts) runs.push_back({fused.rows.size(), {}});
+    const Timestamp time = sample.time + fusion.last_shift();
+    if (taken && wish.smooth) runs.back().inputs.push_back({time, what});
+    if (inertial && imu == nullptr) continue;
     fused.rows.push_back(row_of(fusion.pose(), sample.stamped));
-    times.push_back(sample.time);
+    times.push_back(taken ? std::optional(time) : std::nullopt);
   }
   fused.counts = fusion.counts();
   fused.lateness = fusion.lateness();
-  if (wish.smooth) take_smoothed(fused.rows, times, std::move(inputs), settings);
+  if (!wish.smooth) return fused;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::size_t first = runs[i].first_row;
+    const std::size_t rows = (i + 1 < runs.size() ? runs[i + 1].first_row : fused.rows.size()) - first;
+    take_smoothed(std::span(fused.rows).subspan(first, rows), std::span(times).subspan(first, rows),
+                  std::move(runs[i].inputs), settings);
+  }
   return fused;
 }
 

@@ -56,6 +56,38 @@ TEST(FuseSession, PosesOfATrackerAreUsedByThemselves) {
   }
 }
 
+// All clocks fall back by six seconds at the middle: the same times come twice, in another place. Or the
+// tracker's alone does.
+TEST(FuseSession, RunsBeforeAndAfterAClockThatBeginsAgainAreSmoothedApart) {
+  const SimulatedHand hand;
+  for (const bool all : {true, false}) {
+    Session session = session_of(hand, "0002:0001:");
+    constexpr double middle_s = 6, back_s = 6;
+    const Eigen::Vector3d away(0.3, -0.2, 0.1);
+    for (RecordedSample& sample : session.samples) {
+      if (auto* imu = std::get_if<ImuSample>(&sample.sample);
+          imu != nullptr && all && imu->time.host > at_second(middle_s))
+        imu->time.host -= std::chrono::seconds(6);
+      auto* pose = std::get_if<PoseSample>(&sample.sample);
+      if (pose == nullptr || pose->time.host <= at_second(middle_s)) continue;
+      pose->time.host -= std::chrono::seconds(6);
+      if (all) pose->tracker_from_tool.translation += away;
+    }
+    const auto fused = fuse_session(session, {.use = named("gyro,accel,pose"), .smooth = true});
+    ASSERT_TRUE(fused.has_value()) << fused.error().message;
+    ASSERT_EQ(fused->rows.size(), 2500U);
+    EXPECT_EQ(fused->lateness.restarts, all ? 1U : 0U);
+    EXPECT_EQ(fused->lateness.rejoined, all ? 0U : 1U);
+    for (const std::size_t i : {500U, 1000U, 1300U, 1400U, 1800U, 2200U, 2400U}) {
+      const bool later = all && (double(i) + 1) * step_s > middle_s;
+      const double t = seconds(fused->rows[i].time.time_since_epoch()) + (later ? back_s : 0);
+      ASSERT_TRUE(fused->rows[i].position_m) << i;
+      const Eigen::Vector3d truth = hand.position(t) + (later ? away : Eigen::Vector3d::Zero());
+      EXPECT_LT((*fused->rows[i].position_m - truth).norm(), 3e-3) << i << " " << all;
+    }
+  }
+}
+
 TEST(FuseSession, WhatIsNotThereIsSaid) {
   const Session session = session_of({}, "text:imu-csv");
   EXPECT_EQ(fuse_session(session, {.use = named("range")}).error().fault, Fault::usage);
