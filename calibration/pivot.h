@@ -27,7 +27,10 @@ class PivotProcedure {
   // Poses of one tool, of the tracker or of a reference that stands for it.
   Progress add(const PoseSample& sample);
   // What is added from now on spins about the handle's axis; the tip may rest or not.
-  void begin_spin() { spinning_ = true; }
+  void begin_spin() {
+    spinning_ = true;
+    screen_.begin_again();
+  }
 
   // The tip of the robust fit. Refused: fewer than 8 different poses; a frozen tracker; an orientation that
   // stays; turning in one plane only (condition above 40); transposed matrices; more than a quarter of the

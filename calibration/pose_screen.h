@@ -18,6 +18,9 @@ class PoseScreen {
   };
   Finding look(const PoseSample& sample);
 
+  // What comes now is another session, with times of its own.
+  void begin_again() { last_.reset(); }
+
   std::size_t seen() const { return seen_; }
   std::size_t repeats() const { return repeats_; }
   bool frozen() const { return seen_ > unusable_ + 1 && repeats_ + unusable_ + 1 >= seen_; }

@@ -59,6 +59,8 @@ class SurfaceProcedure {
   Calibration<SurfaceCalibration> finish() const;
 
  private:
+  std::string missing() const;
+
   Eigen::Vector3d tip_m_;
   bool corners_first_;
   PoseScreen screen_;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double mm_per_m = 1e3;
 constexpr std::size_t fewest_places = 6;
-constexpr std::size_t enough_places = 25;
-constexpr double apart_mm = 2;  // places nearer than this are one
+constexpr std::size_t enough_places = 25, most_places = 60;  // for the progress
+constexpr double apart_mm = 2;                               // places nearer than this are one
 constexpr double worst_corner_mm = 5;
 constexpr double finest_mm = 0.02;  // no touch is better than this
 constexpr double worst_rms_mm = 2;
@@ -162,6 +162,18 @@ void judge(CalibrationReport& report, const SurfaceCalibration& surface, const P
   report.detail("error_between_mm", between.error_mm);
 }
 
+// Of a sheet whose first four places are its corners.
+std::vector<std::string> bare_parts(const std::vector<Eigen::Vector3d>& places_m) {
+  const Eigen::Vector3d right_mm = mm_per_m * (places_m[1] - places_m[0]);
+  const Eigen::Vector3d up_mm = mm_per_m * (places_m[3] - places_m[0]);
+  Points points;
+  for (const Eigen::Vector3d& place : places_m) {
+    const Eigen::Vector3d at_mm = mm_per_m * (place - places_m[0]);
+    points.emplace_back(at_mm.dot(right_mm.normalized()), at_mm.dot(up_mm.normalized()), 0);
+  }
+  return untouched_parts(points, right_mm.norm(), up_mm.norm());
+}
+
 }  // namespace
 
 Progress SurfaceProcedure::add(const PoseSample& sample) {
@@ -175,14 +187,24 @@ Progress SurfaceProcedure::add(const PoseSample& sample) {
     if ((tip - way_[rests_since_].point_m).norm() > 2 * rest.nearest_m) rests_since_ = way_.size() - 1;
     constexpr double far_m = 0.015;
     const auto near = [&](const Eigen::Vector3d& q) { return (tip - q).norm() < far_m; };
-    if (sample.time.host - way_[rests_since_].time >= rest.shortest && places_.size() < enough_places &&
+    if (sample.time.host - way_[rests_since_].time >= rest.shortest && places_.size() < most_places &&
         std::none_of(places_.begin(), places_.end(), near))
       places_.push_back(tip);
   }
-  const double covered = std::min(1.0, double(places_.size()) / double(enough_places));
-  return {way_.size(), screen_.frozen() ? 0 : covered,
-          covered < 1 ? "rest the tip on " + std::to_string(enough_places - places_.size()) + " more places"
-                      : ""};
+  Progress progress{way_.size(), std::min(1.0, double(places_.size()) / double(enough_places)), missing()};
+  constexpr double nearly = 0.99;
+  if (!progress.missing.empty()) progress.covered = std::min(progress.covered, nearly);
+  if (screen_.frozen()) progress.covered = 0;
+  return progress;
+}
+
+// Enough places, and, where the corners say how large the sheet is, all over it.
+std::string SurfaceProcedure::missing() const {
+  if (places_.size() < enough_places)
+    return "rest the tip on " + std::to_string(enough_places - places_.size()) + " more places";
+  if (!corners_first_ || places_.size() == most_places) return {};
+  const auto parts = bare_parts(places_);
+  return parts.empty() ? std::string() : "rest the tip at the " + listed(parts) + " too";
 }
 
 Calibration<SurfaceCalibration> SurfaceProcedure::finish() const {

@@ -36,7 +36,7 @@ void print(const KeptCalibration& kept) {
   for (const std::string& device : r.devices) with += (with.empty() ? "" : " ") + device;
   if (!r.tool.empty()) with += " " + r.tool;
   if (!r.reference.empty()) with += " on " + r.reference;
-  std::printf("%c %-10s %3d  %-20s  rms %.3f %s  %s\n", kept.current ? '*' : ' ', r.procedure.c_str(),
+  std::printf("%c %-13s %3d  %-20s  rms %.3f %s  %s\n", kept.current ? '*' : ' ', r.procedure.c_str(),
               kept.version, r.date.c_str(), r.rms, r.unit.c_str(), with.c_str());
 }
 

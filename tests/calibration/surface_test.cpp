@@ -382,5 +382,28 @@ TEST(Surface, WavesAsShortAsTheGridAreWarnedOf) {
   EXPECT_FALSE(warned(staggered));
 }
 
+// Who touches row by row has not done when 25 places are touched, but when the upper part is too.
+TEST(Surface, TheProgressAsksForThePartsThatTheCornersEnclose) {
+  const ScriptedSheet sheet;
+  SurfaceProcedure procedure(sheet.tip_m, true);
+  Noise noise(3);
+  double t = 0;
+  const auto touch = [&](double x, double y) {
+    Progress progress;
+    for (int k = 0; k < 15; ++k, t += 0.02)
+      progress = procedure.add(sheet.holding(sheet.point_m(x, y, noise.normal(0.02)), noise, t));
+    return progress;
+  };
+  touch(0, 0), touch(420, 0), touch(420, 297), touch(0, 297);
+  Progress progress;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 8; ++i) progress = touch(30 + 50 * i, 20 + 30 * j);
+  EXPECT_LT(progress.covered, 1);
+  EXPECT_NE(progress.missing.find("upper middle"), std::string::npos) << progress.missing;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 8; ++i) progress = touch(30 + 50 * i, 130 + 60 * j);
+  EXPECT_EQ(progress.covered, 1) << progress.missing;
+}
+
 }  // namespace
 }  // namespace fude
