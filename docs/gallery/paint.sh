@@ -23,6 +23,11 @@ for brush in "$here"/brushes/*.toml; do
 done
 "$fude" perform brushwork --out "$work/brushwork.fude"
 paint "$work/brushwork.fude" brushwork.png --flow off --cell-mm 0.13
+"$fude" perform petals --out "$work/petals.fude"
+paint "$work/petals.fude" petals.png --cell-mm 0.15
+"$fude" perform flat --out "$work/flat.fude"
+paint "$work/flat.fude" flat.png --brush flat --manner upright --cell-mm 0.15
+"$fude" brushes --out "$here/brushes.png" --force
 "$fude" perform blots --out "$work/blots.fude"
 for paper in xuan feathery light-fringe branching rough-edge dark-edge; do
   paint "$work/blots.fude" "blots-$paper.png" --paper "$paper" --settle 20
