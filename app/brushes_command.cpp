@@ -43,7 +43,10 @@ std::string remark_of(const std::string& name) {
   return path ? first_remark(*path) : std::string();
 }
 
-double widest_mm(const BrushSpec& spec) { return 2 * std::max(spec.belly_radius_mm, spec.root_radius_mm); }
+double widest_mm(const BrushSpec& spec) {
+  if (spec.spines > 1) return spec.row_width_mm;
+  return 2 * std::max(spec.belly_radius_mm, spec.root_radius_mm);
+}
 
 // Each leaning over a stroke of its own.
 Result<Picture> drawn(const BrushSpec& spec, TuftLook look) {
